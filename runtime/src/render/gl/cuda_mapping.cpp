@@ -24,7 +24,7 @@ struct CudaMapping::Driver {
 
   std::uint32_t buffer = 0;
   void* resource = nullptr;
-  /// That the buffer is mapped for.
+  /// The stream for which the buffer is mapped.
   void* stream = nullptr;
   bool mapped = false;
 };
@@ -89,12 +89,12 @@ Result<MappedBuffer> CudaMapping::map(std::uint32_t buffer, std::uintptr_t strea
     driver_->mapped = true;
     result = driver_->address(&address, &size, driver_->resource);
   }
-  // Other streams may use it, too.
+  // Other streams may use the buffer too.
   if (result == 0) result = driver_->synchronize(driver_->stream);
   if (result != 0) {
     return refused(fmt::format("CUDA cannot map OpenGL's buffer (error {})", result));
   }
-  // CUDA's devices are numbered as its handles of them are.
+  // A device handle of CUDA's driver is also the number of the device.
   return MappedBuffer{address, device};
 }
 

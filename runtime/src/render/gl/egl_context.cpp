@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kMostDevices = 64;
 
-/// Of displays: who else closes one does not close it for us, where EGL can count who uses it.
+/// Attributes of displays. If EGL can count the users of a display, it stays open for us when
+/// another part of the program closes it.
 std::array<EGLint, 3> displayAttributes() {
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_KHR_display_reference")) return {EGL_NONE};
   return {EGL_TRACK_REFERENCES_KHR, EGL_TRUE, EGL_NONE};
@@ -34,14 +35,16 @@ std::vector<EGLDeviceEXT> deviceHandles() {
   std::array<EGLDeviceEXT, kMostDevices> handles{};
   EGLint count = 0;
   if (!eglQueryDevicesEXT(static_cast<EGLint>(handles.size()), handles.data(), &count)) return {};
-  // Not in braces: they would make a list of the two iterators, which are pointers themselves.
+  // Parentheses, because braces would make a list of the two iterators, which are pointers
+  // themselves.
   return std::vector<EGLDeviceEXT>(handles.begin(), handles.begin() + count);
 }
 
 DeviceFacts factsOf(EGLDeviceEXT device, std::size_t number) {
   DeviceFacts facts;
   facts.name = fmt::format("EGL device {}", number);
-  // Asked first: where a device is hidden from the process, some drivers crash in what follows.
+  // This query comes first: if a device is hidden from the process, some drivers crash in the later
+  // ones.
   const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
   if (extensions == nullptr) return facts;
   facts.software = epoxy_extension_in_string(extensions, "EGL_MESA_device_software");
@@ -77,7 +80,8 @@ ContextFacts factsOfCurrent() {
   return facts;
 }
 
-/// A core context of OpenGL 4.5, or else whatever version there is, so that it can be named.
+/// A core context of OpenGL 4.5, or else of whatever version there is, so that the error can name
+/// it.
 EGLContext newContext(EGLDisplay display) {
   constexpr std::array<std::array<EGLint, 2>, 2> kVersions{{{4, 5}, {3, 2}}};
   for (const auto& [major, minor] : kVersions) {
@@ -134,7 +138,7 @@ Result<EglContext> openSurfaceless() {
                 name);
 }
 
-/// The first that opens and is what was wished for; else why the last was not.
+/// Opens the first device that meets the wish; if none does, the error has the reason for each.
 Result<EglContext> openFirst(const DeviceWish& wish, std::span<const EGLDeviceEXT> handles,
                              std::span<const DeviceFacts> devices,
                              std::span<const std::size_t> numbers) {
@@ -170,7 +174,7 @@ bool isNamed(const DeviceWish& wish) {
 }  // namespace
 
 bool loadsLibrary(const char* name) {
-  // Never closed: drivers do not like to be unloaded.
+  // Never closed, because many drivers cannot be unloaded safely.
   return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr;
 }
 

@@ -51,7 +51,7 @@ void GlEngine::begin(std::span<const RenderView> views, const RenderTargets& tar
   collected_slices_ = 0;
   const CurrentContext current(context_);
   if (!current.holds()) throw ErrorException(lostContext(current));
-  // A batch that failed leaves slices behind, whose buffers are in use until they are drawn.
+  // A batch that failed leaves slices behind, whose buffers are in use until the slices are drawn.
   finishSlices();
   renderer_->resetStatistics();
   submitNext();
@@ -78,7 +78,7 @@ void GlEngine::submitNext() {
     try {
       renderer_->submit(views_.subspan(submitted_views_, count), slice);
     } catch (...) {
-      // What was submitted is still to be collected, and nothing else.
+      // end() has to collect the slices that were submitted, but none of the other views.
       views_ = {};
       throw;
     }
@@ -94,7 +94,7 @@ void GlEngine::finishSlices() {
 }
 
 Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
-  // What a batch that failed left behind is not to be collected any more.
+  // Slices that a failed batch left behind must not be collected.
   collected_slices_ = submitted_slices_;
   const CurrentContext current(context_);
   if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
@@ -105,7 +105,7 @@ Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
   if (!renderer_->hasRoomOnDevice(views.size())) cuda_->forget();
   Result<ImageLayout> layout = renderer_->reserveDeviceImages(views.size());
   if (!layout) return layout;
-  // Four pixels of three bytes are written together, so that slices share none.
+  // Four pixels of three bytes are written together; slices must not share such a group.
   constexpr std::size_t kTogether = 4;
   const std::size_t most = std::max(renderer_->mostViews() / kTogether, std::size_t{1}) * kTogether;
   std::size_t next = 0;

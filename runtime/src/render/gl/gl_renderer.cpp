@@ -15,7 +15,7 @@
 namespace galactic::render::gl {
 namespace {
 
-/// As it is read by glMultiDrawElementsIndirect.
+/// As glMultiDrawElementsIndirect() reads it.
 struct DrawCommand {
   std::uint32_t count;
   std::uint32_t instance_count;
@@ -23,7 +23,7 @@ struct DrawCommand {
   std::int32_t base_vertex;
   std::uint32_t base_instance;
 };
-/// What culling knows of a chunk.
+/// What culling finds out about a chunk.
 struct ChunkResult {
   std::uint32_t seen;
   std::uint32_t triangles;
@@ -69,7 +69,7 @@ void describe(GLuint array, const Attribute& attribute, GLuint binding) {
 
 constexpr std::size_t kTotalsBytes = kDrawClasses * sizeof(DrawTotals);
 
-/// Of the images that a slice reads back.
+/// Size of the images that a slice reads back, bytes.
 std::size_t readBytes(const ViewSlice& slice) { return slice.stays ? 0 : slice.layout.bytes; }
 
 GLint limitOf(GLenum name) {
@@ -82,8 +82,8 @@ void bind(Binding binding, const Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.get());
 }
 
-/// Starts the current compute shader with so many threads and some more, in rows of work groups:
-/// no driver has to take more of them in one dimension than this.
+/// Starts the current compute shader with at least `threads` threads, in rows of work groups no
+/// longer than every driver must support.
 void dispatch(std::size_t threads) {
   constexpr std::size_t kLongestRow = 65535;
   const std::size_t groups = (threads + kGroupSize - 1) / kGroupSize;
@@ -197,8 +197,8 @@ void GlRenderer::makeVertexArray(bool vertex_colors) {
 }
 
 void GlRenderer::chooseSlices(const GlTuning& tuning) {
-  // More views than this gain nothing, and while one slice is copied the next is drawn. On a
-  // processor the targets of a slice should stay in its cache.
+  // Larger slices draw no faster, and smaller ones can be copied while the next one is drawn. With
+  // a software driver the targets of a slice should fit into the processor's cache.
   constexpr std::size_t kGoodViews = 256;
   constexpr std::size_t kGoodSoftwareViews = 8;
   constexpr std::size_t kTargetBytes = std::size_t{1} << 30U;
@@ -251,7 +251,8 @@ void GlRenderer::start(std::span<const RenderView> views, ViewSlice& slice) {
   slice.views = views.size();
   slice.counts = countSlice(views, models_);
   targets_.reserve(views.size());
-  // Before anything is drawn: whoever asks for memory takes the error of an earlier call.
+  // Reserved before anything is drawn, because reserve() would take the error of an earlier call
+  // for its own.
   slice.readback.reserve(readBytes(slice) + kTotalsBytes);
   if (measures_) stamp(slice.times[0]);
   upload(views, slice);
@@ -317,7 +318,7 @@ void GlRenderer::cull(const SliceCounts& counts) {
   glDispatchCompute(kDrawClasses, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   if (!indirect_count_) {
-    // Commands that nothing was written for draw nothing.
+    // Commands that no shader writes stay zero and draw nothing.
     glClearNamedBufferData(draws_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
   }
   bind(kDraws, draws_);
@@ -376,8 +377,8 @@ void GlRenderer::resolve(const ViewSlice& slice) {
   bind_part(0, layout.color, layout.depth);
   bind_part(1, layout.depth, layout.semantics);
   bind_part(2, layout.semantics, layout.bytes);
-  // OpenGL asks for no barrier here, but Mesa's software driver does not otherwise wait for what is
-  // drawn when a compute shader reads it.
+  // OpenGL requires no barrier here, but without one Mesa's software driver lets the compute shader
+  // read before drawing is finished.
   glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   targets_.bindForReading();
   glUseProgram(programs_.resolve.get());

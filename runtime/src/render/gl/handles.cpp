@@ -34,7 +34,7 @@ void Buffer::reserve(std::size_t bytes) {
   glCreateBuffers(1, &name);
   name_ = BufferName(name);
   const auto size = static_cast<GLsizeiptr>(bytes);
-  // Whatever fails, the next call begins anew.
+  // If anything fails below, the next call starts afresh.
   size_ = 0;
   data_ = nullptr;
   glNamedBufferStorage(name, size, nullptr, flags);

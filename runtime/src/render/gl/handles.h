@@ -62,7 +62,7 @@ class Buffer {
   /// Makes room for `bytes` bytes, and for at least one, so that the buffer can be bound. If it
   /// grows, it loses its content. Throws ErrorException if there is too little memory.
   void reserve(std::size_t bytes);
-  /// Makes a buffer of exactly this size and content, which never changes again.
+  /// Creates the buffer with this content, which never changes again.
   void fill(const void* data, std::size_t bytes);
 
   [[nodiscard]] GLuint get() const { return name_.get(); }

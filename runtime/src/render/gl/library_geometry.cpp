@@ -15,7 +15,7 @@ DrawClass classOf(const RenderCluster& cluster, const RenderMaterial& material) 
   return two_sided ? DrawClass::kTwoSided : DrawClass::kOneSided;
 }
 
-/// The product of two colors, channel by channel, rounded.
+/// The product of two colors per channel, rounded.
 std::uint32_t multiplied(std::uint32_t a, std::uint32_t b) {
   std::uint32_t product = 0;
   for (std::uint32_t shift = 0; shift < 32; shift += 8) {

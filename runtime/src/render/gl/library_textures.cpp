@@ -14,7 +14,8 @@
 namespace galactic::render::gl {
 namespace {
 
-/// Adds a texture to the array of its kind that has room, or to a new one.
+/// Adds a texture to an array of its size and format that has room, or to a new one; returns its
+/// textureSlot().
 std::uint32_t place(const RenderTexture& texture, TexelFormat format, std::size_t most_layers,
                     std::vector<TextureArray>& arrays) {
   auto found = std::ranges::find_if(arrays, [&](const TextureArray& array) {
@@ -51,7 +52,7 @@ std::size_t levelBytes(std::uint32_t edge, TexelFormat format) {
   return textureBytes(edge, format) - textureBytes(edge / 2, format);
 }
 
-/// One level of one layer, in the format of the array.
+/// Uploads one level of one layer, in the format of the array.
 void uploadLevel(GLuint array, const TextureArray& kind, GLint layer, GLint level,
                  std::span<const std::uint8_t> texels) {
   const auto edge = static_cast<GLsizei>(kind.size >> static_cast<unsigned>(level));
@@ -88,7 +89,7 @@ Texture uploadArray(const TextureArray& kind) {
   Texture array(name);
   const GLint levels = std::countr_zero(kind.size) + 1;
   const bool bc1 = kind.format == TexelFormat::kBc1;
-  // Not the sRGB formats: filtering is of the encoded values, as in the other backend.
+  // Not the sRGB formats, because the other backends filter the encoded values too.
   const auto edge = static_cast<GLsizei>(kind.size);
   glTextureStorage3D(name, levels, bc1 ? GL_COMPRESSED_RGB_S3TC_DXT1_EXT : GL_RGBA8, edge, edge,
                      static_cast<GLsizei>(kind.layers.size()));
@@ -104,7 +105,7 @@ Texture uploadArray(const TextureArray& kind) {
 
 Result<TexturePlan> planTextures(const RenderLibrary& library, const TextureLimits& limits) {
   TexturePlan plan = spread(library, limits.layers, limits.bc1);
-  // Decoded, the compressed ones share the arrays of the others.
+  // Once decoded, compressed textures can share the arrays of the others.
   if (plan.arrays.size() > limits.arrays) plan = spread(library, limits.layers, false);
   if (plan.arrays.size() > limits.arrays) {
     return fail(ErrorCode::kUnsupported, "render backend gl",

@@ -44,7 +44,7 @@ void link(std::initializer_list<Stage> stages, Program& program, Result<void>& o
       return;
     }
     glAttachShader(program.get(), *shader);
-    // Lives on in the program.
+    // The program keeps the shader alive.
     glDeleteShader(*shader);
   }
   glLinkProgram(program.get());

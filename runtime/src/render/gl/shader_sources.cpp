@@ -9,7 +9,8 @@ namespace {
 
 constexpr const char* kVersion = "#version 450 core\n";
 
-/// What the stages hand on. Without colors of vertices, a color is the same all over a triangle.
+/// The values that each stage passes to the next. If vertices have no colors, a triangle has the
+/// same color everywhere.
 std::string corner(const ShaderVariant& variant) {
   return fmt::format(
       "{{ vec2 texture_place; {} color; flat uint slot; flat float cutoff; flat uint semantic; }}",
@@ -27,8 +28,8 @@ std::string definitions(const ShaderVariant& variant) {
   return text + fmt::format("#define COLOR_BYTES {}\n", variant.color ? variant.color_bytes : 0);
 }
 
-/// A function that reads one of the arrays: which one must not vary between neighboring threads,
-/// so it is a switch and not an index.
+/// A function that reads one of the arrays. It uses a switch, because an index into the arrays must
+/// not vary between neighboring threads.
 std::string texelFunction(std::size_t arrays) {
   if (arrays == 0) return {};
   std::string text =

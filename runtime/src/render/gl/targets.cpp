@@ -80,7 +80,7 @@ ImageLayout imageLayout(const RenderOptions& options, std::size_t capacity) {
   layout.color_of_view = pixels * static_cast<std::size_t>(options.color);
   layout.depth_of_view = options.depth ? pixels * sizeof(float) : 0;
   layout.semantics_of_view = options.semantics ? pixels * sizeof(std::uint32_t) : 0;
-  // Color is written by four pixels: the last may be beyond the image.
+  // Color is written four pixels at a time, and the last ones may be beyond the image.
   layout.depth = aligned(capacity * layout.color_of_view + 4 * sizeof(std::uint32_t));
   layout.semantics = layout.depth + aligned(capacity * layout.depth_of_view + sizeof(float));
   layout.bytes = layout.semantics + aligned(capacity * layout.semantics_of_view + sizeof(float));

@@ -19,7 +19,7 @@ bool isFinite(const RigidTransform& transform) {
          isFinite(transform.origin);
 }
 
-/// Calls `use` for every instance of a view that has something to show.
+/// Calls `use` for each instance of a view that has something to show.
 template <class Use>
 void forInstances(const RenderView& view, std::span<const ModelClusters> models, Use use) {
   if (!canSee(view.camera)) return;

@@ -1,4 +1,4 @@
-// The third pass of culling: the commands of a chunk.
+// The third pass of culling: writes the commands of a chunk.
 layout(std430, binding = 2) restrict readonly buffer BoundsOfClusters { Bounds bounds[]; };
 layout(std430, binding = 3) restrict readonly buffer Chunks { Chunk chunks[]; };
 layout(std430, binding = 4) restrict readonly buffer Results { ChunkResult results[]; };

@@ -1,4 +1,4 @@
-// The second pass of culling: where the commands of each chunk go.
+// The second pass of culling: decides where the commands of each chunk go.
 layout(local_size_x = 256) in;
 layout(std430, binding = 4) restrict buffer Results { ChunkResult results[]; };
 layout(std430, binding = 5) restrict writeonly buffer Totals { Total totals[4]; };
@@ -9,10 +9,10 @@ shared uint shared_draws[256];
 shared uint shared_clusters[256];
 shared uint shared_triangles[256];
 
-// Neighboring clusters that are seen make one draw.
+// Neighboring clusters that are seen are drawn with one command.
 uint drawsOf(uint seen) { return uint(bitCount(seen & ~(seen << 1))); }
 
-// One work group for each class; each thread has a run of its chunks.
+// One work group for each class; each thread handles a run of the class's chunks.
 void main() {
   uint kind = gl_WorkGroupID.x;
   uint lane = gl_LocalInvocationID.x;

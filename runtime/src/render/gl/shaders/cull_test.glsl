@@ -1,4 +1,5 @@
-// The first pass of culling: which clusters of a chunk are seen. A thread has a chunk.
+// The first pass of culling: finds the clusters of a chunk that are seen. Each thread handles a
+// chunk.
 layout(std430, binding = 0) restrict readonly buffer Instances { Instance instances[]; };
 layout(std430, binding = 2) restrict readonly buffer BoundsOfClusters { Bounds bounds[]; };
 layout(std430, binding = 3) restrict readonly buffer Chunks { Chunk chunks[]; };
@@ -7,8 +8,8 @@ layout(location = 0) uniform float u_near;
 layout(location = 1) uniform uint u_chunks;
 layout(location = 2) uniform uint u_culling;
 
-// The eye and the planes of what a camera sees, in the frame of a model: inside is where
-// dot(plane.xyz, p) + plane.w >= 0.
+// The eye and the planes around what a camera sees, in the frame of a model. A point p is inside
+// where dot(plane.xyz, p) + plane.w >= 0.
 struct Sight { vec3 eye; vec4 planes[5]; };
 
 Sight sightOf(Instance instance) {
@@ -33,7 +34,7 @@ bool isSeen(Sight sight, Bounds box) {
     vec4 plane = sight.planes[i];
     float reach = dot(abs(plane.xyz), halves);
     float from_plane = dot(plane.xyz, center) + plane.w;
-    // Room for rounding, here and where the corners are transformed.
+    // Room for rounding errors, here and in the transformation of the corners.
     float slack = 1e-5 * (dot(abs(plane.xyz), abs(center)) + abs(plane.w) + reach);
     if (from_plane + reach < -slack) return false;
   }

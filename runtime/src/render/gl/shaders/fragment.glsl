@@ -1,4 +1,4 @@
-// One pixel of a triangle.
+// Colors one pixel of a triangle.
 #ifdef COLOR
 layout(location = 0) out vec4 o_color;
 #endif
@@ -17,7 +17,7 @@ vec4 shade() {
   vec2 along_x = dFdx(from.texture_place);
   vec2 along_y = dFdy(from.texture_place);
   if (from.slot != 0xFFFFFFFFu) {
-    // The nearest of the levels, by the longer side of the pixel's footprint.
+    // The nearest level for the longer side of the pixel's footprint.
     float edge = float(1u << (from.slot >> 24));
     float footprint = max(dot(along_x, along_x), dot(along_y, along_y)) * edge * edge;
     float level = footprint > 0.0 ? max(floor(0.5 * log2(footprint) + 0.5), 0.0) : 0.0;

@@ -1,4 +1,4 @@
-// Chooses the layer where the vertex shader cannot.
+// Chooses the layer if the vertex shader cannot.
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 

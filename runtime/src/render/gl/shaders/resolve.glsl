@@ -1,4 +1,4 @@
-// From the targets to images in the layout of the caller.
+// Copies the targets to images in the layout of the caller.
 layout(std430, binding = 0) restrict writeonly buffer ColorOut { uint color_out[]; };
 layout(std430, binding = 1) restrict writeonly buffer DepthOut { float depth_out[]; };
 layout(std430, binding = 2) restrict writeonly buffer SemanticOut { uint semantic_out[]; };
@@ -17,7 +17,7 @@ ivec3 placeOf(uint pixel) {
   return ivec3(pixel - row * u_width, row - layer * u_height, layer);
 }
 
-// Four pixels a thread: in three bytes each, they make three words.
+// Each thread writes four pixels: with three bytes each, they make three words.
 void main() {
   uint begin = 4u * threadNumber();
   if (begin >= u_pixels) return;

@@ -1,4 +1,4 @@
-// As GpuInstance, GpuBounds, GpuChunk, ChunkResult, DrawCommand and DrawTotals in C++.
+// The same as GpuInstance, GpuBounds, GpuChunk, ChunkResult, DrawCommand and DrawTotals in C++.
 struct Instance {
   vec4 row_x; vec4 row_y; vec4 row_z;
   float scale_x; float scale_y; uint layer; uint semantic;

@@ -1,10 +1,10 @@
-// One corner of a triangle, from the frame of its model to the target.
+// Takes one corner of a triangle from the frame of its model to the target.
 layout(location = 0) in vec3 a_place;
 layout(location = 1) in vec2 a_texture_place;
 layout(location = 2) in COLOR_TYPE a_color;
 layout(location = 3) in uvec2 a_texture;
 layout(location = 4) in float a_cutoff;
-// Of the instance.
+// Attributes of the instance.
 layout(location = 5) in vec4 a_row_x;
 layout(location = 6) in vec4 a_row_y;
 layout(location = 7) in vec4 a_row_z;
@@ -13,7 +13,7 @@ layout(location = 9) in uint a_layer;
 layout(location = 10) in uint a_semantic;
 layout(location = 0) uniform float u_near;
 
-// The same corner of two triangles must come out the same.
+// A corner that two triangles share must be the same in both.
 invariant gl_Position;
 
 void main() {
