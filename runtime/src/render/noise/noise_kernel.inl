@@ -14,14 +14,15 @@ inline WordLanes mixed(WordLanes x) {
   return x ^ x >> 16;
 }
 
-/// Of the pixel with this number and the seven behind it.
+/// The first random words of the pixel with this number and of the seven after it.
 inline WordLanes firstWords(const PixelKey& key, std::size_t pixel) {
   const WordLanes numbers{0, 1, 2, 3, 4, 5, 6, 7};
   return mixed(numbers + (key.words[0] + static_cast<std::uint32_t>(pixel)));
 }
 
-/// The sum of four uniform numbers: within 1 % of the normal distribution's, and never further out
-/// than 3.5 deviations. Mean 0, deviation 1. Of numbers of 16 bits, in two words.
+/// The sum of four uniform numbers, scaled to mean 0 and deviation 1: within 1 % of the normal
+/// distribution, and never further out than 3.5 deviations. The numbers have 16 bits each and come
+/// from two words.
 inline Lanes nearlyNormal(WordLanes a, WordLanes b) {
   // 65536 / sqrt(3).
   constexpr float kInverseDeviation = 1.0F / 37837.228F;
@@ -29,7 +30,8 @@ inline Lanes nearlyNormal(WordLanes a, WordLanes b) {
   return toFloat(as<IntLanes>(sum) - 2 * 0xFFFF) * spread(kInverseDeviation);
 }
 
-/// The same of numbers of 8 bits, in one word: fine enough for what is rounded to levels.
+/// The same from numbers of 8 bits, in one word: fine enough for results that are rounded to
+/// levels.
 inline Lanes nearlyNormal(WordLanes a) {
   // sqrt((256^2 - 1) / 3).
   constexpr float kInverseDeviation = 1.0F / 147.80054F;
@@ -60,7 +62,7 @@ inline void addDepthNoise(const DepthNoise& noise, float* depth, std::size_t cou
   __builtin_memcpy(depth + n, rest, (count - n) * sizeof(float));
 }
 
-/// Colors in the three lower bytes of each word; the highest stays as it is.
+/// Adds noise to the colors in the three lower bytes of each word; the highest byte stays as it is.
 inline WordLanes noisyColor(const ColorNoise& noise, WordLanes color, std::size_t pixel) {
   const WordLanes first = firstWords(noise.key, pixel);
   WordLanes result = color & 0xFF000000U;
@@ -74,7 +76,7 @@ inline WordLanes noisyColor(const ColorNoise& noise, WordLanes color, std::size_
   return result;
 }
 
-/// Eight pixels, and the byte behind the last one, which stays as it is.
+/// Adds noise to eight pixels. It also writes the byte after the last one, which stays as it is.
 inline void addToBlock(const ColorNoise& noise, std::uint8_t* color, std::uint32_t channels,
                        std::size_t pixel) {
   const auto word = [&](std::uint32_t n) {
@@ -82,7 +84,8 @@ inline void addToBlock(const ColorNoise& noise, std::uint8_t* color, std::uint32
   };
   const WordLanes before{word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7)};
   const WordLanes words = noisyColor(noise, before, pixel);
-  // In this order: with three channels, the highest byte of a word is the next pixel's first.
+  // The order matters: with three channels, the highest byte of a word is the first of the next
+  // pixel.
   for (std::uint32_t n = 0; n < kLanes; ++n) {
     store(color + std::size_t{channels} * n, words[n]);
   }
@@ -91,7 +94,7 @@ inline void addToBlock(const ColorNoise& noise, std::uint8_t* color, std::uint32
 inline void addColorNoise(const ColorNoise& noise, std::uint8_t* color, std::uint32_t channels,
                           std::size_t count) {
   std::size_t n = 0;
-  // There is a byte behind all but the last pixels.
+  // Only the last block may have no byte after it.
   for (; n + kLanes < count; n += kLanes) addToBlock(noise, color + channels * n, channels, n);
   std::uint8_t rest[4 * kLanes + 1] = {};
   __builtin_memcpy(rest, color + channels * n, (count - n) * channels);

@@ -8,12 +8,12 @@
 namespace galactic::render {
 namespace {
 
-// Apart from each other, and from the numbers of other sensors.
+// Keep these draws independent of each other and of those of other sensors.
 constexpr std::uint64_t kDepthSalt = 0x44657074682D3031ULL;
 constexpr std::uint64_t kColorSalt = 0x436F6C6F722D3031ULL;
 constexpr std::uint64_t kLightSalt = 0x4C696768742D3031ULL;
 
-// Salts of what episodes draw of options that are ranges.
+// Salts of the numbers that episodes draw from options that are ranges.
 constexpr std::uint64_t kDepthDraw = 0x44657074682D4431ULL;
 constexpr std::uint64_t kDropoutDraw = 0x44726F702D2D4431ULL;
 constexpr std::uint64_t kColorDraw = 0x436F6C6F722D4431ULL;
@@ -28,7 +28,7 @@ PixelKey keyOf(std::uint64_t salt, const NoiseSource& source) {
            static_cast<std::uint32_t>(high), static_cast<std::uint32_t>(high >> 32U)}};
 }
 
-/// Of all images of an episode, whichever camera sees them.
+/// The brightness of an episode, the same for the images of all cameras.
 float gainOf(float jitter, const EnvMoment& moment) {
   RandomStream random(moment.seed ^ kLightSalt, moment.env, moment.episode, 0);
   return 1 + jitter * (2 * random.unit() - 1);
