@@ -66,14 +66,15 @@ Result<void> checkOptions(const RenderOptions& options) {
 
 using Made = Result<std::unique_ptr<render::RenderEngine>>;
 
-/// What is taken without being asked for shows first that it draws what it should.
+/// If the user has not asked for `cuda`, it first has to prove that it draws what it should.
 Made makeProvenCudaEngine(const RenderLibrary& library, const RenderOptions& options) {
   RETURN_IF_ERROR(render::proveCuda(options));
   return render::makeCudaEngine(library, options);
 }
 
-/// Without a wish: what is fastest here. Chips for data centers have few units that draw triangles;
-/// OpenGL counts only where a graphics processor stands behind it.
+/// The engine for RenderBackend::kAuto: the fastest on this machine. `cuda` comes before `gl` on
+/// data center chips, which have few units that draw triangles. OpenGL counts only if a graphics
+/// processor runs it.
 Made makeFastestEngine(const RenderLibrary& library, const RenderOptions& options) {
   if (render::isForDataCenters(options)) {
     Made cuda = makeProvenCudaEngine(library, options);
@@ -83,7 +84,7 @@ Made makeFastestEngine(const RenderLibrary& library, const RenderOptions& option
   if (gl) return gl;
   Made cuda = makeProvenCudaEngine(library, options);
   if (cuda) return cuda;
-  // Who names a device does not mean the processor.
+  // A user who names a device does not want to draw on the processor.
   if (!options.device.empty()) {
     if (gl.error().code == ErrorCode::kInvalidInput) return gl;
     return fail(gl.error().code, "render device",
@@ -130,7 +131,8 @@ RigidTransform lookAt(const Vec3& eye, const Vec3& target) {
                     eye.x, eye.y, eye.z, target.x, target.y, target.z));
   }
   const Vec3 ahead = way * (1 / length);
-  // Sines of angles from the vertical whose heading is rounding alone.
+  // If the sine of the angle from the vertical is no larger than this, the heading is mere rounding
+  // error.
   constexpr float kSteepest = 1e-6F;
   const Vec3 level = cross(ahead, {0, 1, 0});
   const float slant = std::sqrt(dot(level, level));
@@ -164,7 +166,7 @@ class BatchRenderer::Impl {
     if (options.noise.changesDepth() || options.noise.changesColor()) noise_.emplace(options);
   }
 
-  /// `call`: BatchRenderer's function.
+  /// `call`: the function of BatchRenderer that was called.
   void begin(const char* call, std::span<const RenderView> views, const RenderTargets& targets) {
     requireIdle(call);
     const std::size_t pixels = views.size() * options_.width * options_.height;
@@ -210,13 +212,13 @@ class BatchRenderer::Impl {
     detail::refuseCall(call, "found a rendering that has begun; end it first, with endRender()");
   }
 
-  /// What the engine looks at.
+  /// The library that the engine refers to.
   std::unique_ptr<const RenderLibrary> library_;
   RenderOptions options_;
   std::unique_ptr<render::RenderEngine> engine_;
   std::string description_;
   std::optional<render::NoisePass> noise_;
-  /// Of the batch in work.
+  /// The batch that is being drawn.
   std::span<const RenderView> views_;
   RenderTargets targets_;
   bool is_drawing_ = false;

@@ -71,8 +71,8 @@ std::vector<std::size_t> matching(std::span<const DeviceFacts> devices, Matches 
   return found;
 }
 
-/// Graphics processors, those that CUDA knows first: beside NVIDIA's own entry for a card, Mesa may
-/// list one that cannot draw.
+/// Graphics processors; those that CUDA knows come first, since Mesa may list an NVIDIA card a
+/// second time, as a device that cannot draw.
 std::vector<std::size_t> graphicsProcessors(std::span<const DeviceFacts> devices) {
   std::vector<std::size_t> found =
       matching(devices, [](const DeviceFacts& device) { return !device.software; });

@@ -1,4 +1,4 @@
-// Stands in for the `gl` backend where it is not built.
+// Stands in for the `gl` backend if it is not built.
 #include "render/render_engine.h"
 
 namespace galactic::render {

@@ -43,7 +43,7 @@ class ViewCheck {
   }
 
   void checkAttached(std::size_t number, const RenderView& view) {
-    // Most views have the list of the view before.
+    // Most views have the same list as the view before.
     if (view.attached.data() != attached_.data() || view.attached.size() != attached_.size()) {
       checkModels(number, "attached", view.attached);
       attached_ = view.attached;

@@ -23,11 +23,11 @@ static_assert(sizeof(DeviceInstance) == sizeof(RenderInstance) &&
                       offsetof(RenderInstance, world_from_model),
               "instances are copied as they are");
 
-/// Blocks for each multiprocessor, of kernels whose blocks take work until none is left.
+/// Blocks per multiprocessor, for kernels whose blocks take work until none is left.
 constexpr std::uint32_t kBlocksPerMultiprocessor = 16;
-/// What a pixel can tell apart.
+/// The most clusters of a pane, limited by the bits of a pixel for them.
 constexpr std::size_t kMostClusters = std::size_t{1} << kRankBits;
-/// Of arrays that are copied together.
+/// Alignment of arrays that are copied together.
 constexpr std::size_t kAlignment = 256;
 
 constexpr std::size_t aligned(std::size_t bytes) {
@@ -44,7 +44,7 @@ T* at(const Memory& memory, std::size_t offset = 0) {
   return at<T>(memory.address() + offset);
 }
 
-/// Copies past the caches: what is written is read by the device alone.
+/// Copies past the caches, since only the device reads the copy.
 void copyPast(void* to, const void* from, std::size_t bytes) {
 #if defined(__SSE2__)
   auto* target = static_cast<std::byte*>(to);
@@ -64,7 +64,7 @@ void copyPast(void* to, const void* from, std::size_t bytes) {
 #endif
 }
 
-/// Elements that go to the device, written one list after the other.
+/// The elements of lists for the device, written one list after the other.
 template <class Element>
 class StagedList {
  public:
@@ -88,14 +88,15 @@ bool isSame(std::span<const AttachedModel> a, std::span<const AttachedModel> b) 
   return a.data() == b.data() && a.size() == b.size();
 }
 
-/// Elements of the lists of all views: those of an attached list that follows itself count once.
+/// How many elements the lists of all views have. If successive views have the same attached list,
+/// its elements count once.
 struct ListSizes {
   std::size_t instances = 0;
   std::size_t posed = 0;
   std::size_t posed_semantics = 0;
   std::size_t attached = 0;
   std::size_t bodies = 0;
-  /// What is placed in front of cameras.
+  /// All models that are placed in front of cameras.
   std::size_t models = 0;
 };
 
@@ -115,7 +116,7 @@ ListSizes listSizes(std::span<const RenderView> views) {
   return sizes;
 }
 
-/// Adds what this thread took of the processor, in seconds.
+/// Adds the processor time of this thread, in seconds.
 class ThreadStopwatch {
  public:
   explicit ThreadStopwatch(double& sum) : sum_(sum) {}
@@ -128,7 +129,7 @@ class ThreadStopwatch {
   double start_ = detail::threadSeconds();
 };
 
-/// Makes a stream the used one for a while.
+/// Sets the stream of all launches for a scope.
 class UsedStream {
  public:
   UsedStream(void*& used, void* stream) : used_(used) { used_ = stream; }
@@ -150,7 +151,7 @@ Result<Kernels> Kernels::load(const Driver& driver) {
                 "nvcc, which compile them, and build it again, or use another backend");
   }
   constexpr std::size_t kLogBytes = 4096;
-  // As cuda.h numbers options of the compiler in the driver.
+  // Options of the driver's compiler, as cuda.h numbers them.
   constexpr int kErrorLog = 5;
   constexpr int kErrorLogBytes = 6;
   std::string log(kLogBytes, '\0');
@@ -302,7 +303,7 @@ Result<void> CudaEngine::stage(std::span<const RenderView> views, const Upload& 
       continue;
     }
     clusters_of_views_[v] = static_cast<std::uint32_t>(clusters);
-    // Cameras of a batch are mostly of one kind.
+    // Most cameras of a batch have the same field of view.
     if (view.camera.vertical_fov != field_of_view) {
       field_of_view = view.camera.vertical_fov;
       focal = focalLength(options_, view.camera);
@@ -525,9 +526,9 @@ Result<void> CudaEngine::readImages() {
 }
 
 void CudaEngine::abandon() {
-  // What this returns is what has failed before.
+  // An error here is the one that has already been reported.
   static_cast<void>(driver_->functions().synchronize(stream_));
-  // Whoever ends the batch all the same finds nothing to wait for.
+  // If the caller ends the batch nevertheless, there is nothing to wait for.
   slices_.clear();
 }
 

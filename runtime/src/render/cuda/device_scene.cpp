@@ -36,8 +36,7 @@ Result<PackTables> DeviceScene::putPack(const RenderMeshes& meshes,
                                         std::vector<DeviceAddress>& bases) {
   std::vector<std::uint32_t> texels;
   std::vector<SurfaceTexels> textures;
-  // All textures of a pack that no pack before has share a base, as long as 32 bits can count their
-  // texels.
+  // The textures of a pack that no earlier pack has share a base, up to this many texels.
   constexpr std::size_t kMostTexels = 0x7FFFFFFF;
   const auto close = [&]() -> Result<void> {
     ASSIGN_OR_RETURN(const DeviceAddress base, put(texels));

@@ -19,7 +19,7 @@ constexpr const char* kWhere = "render backend cuda";
 constexpr int kMultiprocessors = 16;
 constexpr int kCapabilityMajor = 75;
 constexpr int kCapabilityMinor = 76;
-/// The kernels' instructions need this.
+/// The kernels' instructions need this compute capability.
 constexpr int kLeastMajor = 7;
 
 tl::unexpected<Error> refuse(std::string message) {

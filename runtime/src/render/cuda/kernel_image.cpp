@@ -1,6 +1,6 @@
 #include "render/cuda/kernel_image.h"
 
-// The kernels are one text.
+// The kernels are one long string.
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 #include "render/cuda/ptx_texts.h"
 

@@ -1,4 +1,4 @@
-// Stands in for kernel_image.cpp where there is no clang to compile the kernels.
+// Stands in for kernel_image.cpp if the build has no compiler for the kernels.
 #include "render/cuda/kernel_image.h"
 
 namespace galactic::render::cuda {

@@ -1,5 +1,5 @@
-// A device that `auto` takes without being asked for proves itself first: a small scene with
-// triangles of every kind, whose images must be those of the `soft` renderer.
+// Before `auto` takes a CUDA device, the device has to prove itself with a small scene that has
+// triangles of every kind: its images must be those of the `soft` renderer.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -34,7 +34,7 @@ RenderSurface shards() {
   return surface;
 }
 
-/// A floor that begins behind the camera, and a wall behind all, wider than the image.
+/// A floor that begins behind the camera, and a wall behind everything, wider than the image.
 RenderSurface room() {
   RenderSurface surface;
   surface.material = 1;

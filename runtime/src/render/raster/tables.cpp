@@ -68,7 +68,7 @@ ModelTables modelTables(const RenderLibrary& library, std::uint32_t number) {
   const RenderModel& model = library.model(number);
   const Vec3 center = (model.bounds_min + model.bounds_max) * 0.5F;
   const Vec3 half = (model.bounds_max - model.bounds_min) * 0.5F;
-  // A part in a million more: the center is rounded.
+  // Enlarged by a millionth, because the center is rounded.
   const auto wider = [](float half_extent, float at) {
     return half_extent + 1e-6F * (half_extent + std::abs(at));
   };

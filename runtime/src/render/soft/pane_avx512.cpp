@@ -1,4 +1,4 @@
-// Compiled for AVX-512: instantiates no library templates, see column_grid_avx2.cpp.
+// Compiled for AVX-512, so it instantiates no library templates; see column_grid_avx2.cpp.
 #include "render/soft/pane.h"
 
 #if defined(__AVX512F__)

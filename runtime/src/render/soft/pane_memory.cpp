@@ -15,7 +15,7 @@ constexpr std::size_t wholeTiles(std::uint32_t pixels) {
   return (pixels + kTileEdge - 1) / kTileEdge;
 }
 
-/// Hands out a block piece by piece; without one it only counts.
+/// Hands out a block piece by piece; without a block it only counts bytes.
 class Pieces {
  public:
   explicit Pieces(std::byte* block) : block_(block) {}
@@ -37,7 +37,7 @@ std::size_t layOut(std::byte* block, std::size_t tiles, PaneScratch& scratch) {
   constexpr std::size_t kTilePixels = std::size_t{kTileEdge} * kTileEdge;
   pieces.take(scratch.depth, tiles * kTilePixels);
   pieces.take(scratch.ids, tiles * kTilePixels);
-  // Tiles are read in squares of four, and in rows of sixteen.
+  // Reads go beyond the tiles, since they take squares of four by four tiles or rows of sixteen.
   pieces.take(scratch.tile_depth, tiles + std::size_t{4} * kMostTiles);
   pieces.take(scratch.tile_changed, kMostTiles + 4);
   pieces.take(scratch.bucket_starts, kBuckets + 1);
@@ -58,7 +58,8 @@ PaneMemory::PaneMemory(std::uint32_t width, std::uint32_t height) {
 PaneMemory::~PaneMemory() { detail::hugePages()->deallocate(block_, block_bytes_, kAlignment); }
 
 void PaneMemory::reserve(std::size_t models, std::size_t clusters) {
-  // Each by its own size: memory may be lacking between them, and there again at the next call.
+  // Each size is checked separately: memory may run out between two of them and be available again
+  // at the next call.
   if (models > models_.size()) models_.resize(models);
   if (clusters > seen_.size()) seen_.resize(clusters);
   if (clusters > order_.size()) order_.resize(clusters);

@@ -46,8 +46,8 @@ void SoftScene::addTextures(const RenderMeshes& meshes, std::vector<SurfaceTexel
   }
 }
 
-/// Pixels whose textures share a base are read together: as few bases as possible, from the lowest
-/// address on.
+/// Finds as few bases as possible, from the lowest address on, because pixels whose textures share
+/// a base are read together.
 void SoftScene::findBases(const std::vector<RenderMeshes>& packs) {
   std::vector<std::span<const std::uint8_t>> all;
   for (const RenderMeshes& pack : packs) {
@@ -78,7 +78,7 @@ SurfaceTexels SoftScene::inPlace(const RenderTexture& texture) const {
           .kind = textureKind(texture.size, b)};
 }
 
-/// A texture is unpacked once, however many packs have it.
+/// Unpacks a texture once, however many packs have it.
 SurfaceTexels SoftScene::unpacked(const RenderTexture& texture) {
   const auto [known, is_new] = known_.try_emplace(keyOf(texture));
   if (!is_new) return known->second;
