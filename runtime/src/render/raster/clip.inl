@@ -1,10 +1,9 @@
-// Triangles that come too near to the eye, or reach too far beside the image, are cut off
-// (Sutherland and Hodgman). Each edge is cut from the same end by both triangles that share it, so
-// the new corners agree.
+// Clips triangles that come too near to the eye or reach too far beside the image (Sutherland and
+// Hodgman). Two triangles that share an edge cut it from the same end, so their new corners agree.
 namespace galactic::render {
 namespace {
 
-/// A corner before the division by w: numbers as in PlacedModel.
+/// A corner before the division by w; see PlacedModel for its numbers.
 struct ClipVertex {
   float w, x, y;
   float u, v;
@@ -12,7 +11,7 @@ struct ClipVertex {
 };
 
 constexpr int kClipPlanes = 5;
-/// A triangle gains at most one corner at each plane.
+/// Each plane adds at most one corner to a triangle.
 constexpr int kMostCorners = 3 + kClipPlanes;
 
 struct Polygon {
@@ -20,7 +19,7 @@ struct Polygon {
   int count;
 };
 
-/// Not negative where the vertex may stay: the tests of placeVector().
+/// Negative if the plane cuts the vertex off: the same tests as in placeVector().
 GALACTIC_EVERYWHERE inline float clipDistance(const ClipVertex& vertex, int plane, float near) {
   const float guard = kGuard * vertex.w;
   switch (plane) {
@@ -37,7 +36,7 @@ GALACTIC_EVERYWHERE inline float clipDistance(const ClipVertex& vertex, int plan
   }
 }
 
-/// An order of places that does not depend on which triangle asks.
+/// An order of vertices that is the same for all triangles.
 GALACTIC_EVERYWHERE inline bool comesFirst(const ClipVertex& a, const ClipVertex& b) {
   if (a.w != b.w) return a.w < b.w;
   if (a.x != b.x) return a.x < b.x;
@@ -62,7 +61,7 @@ GALACTIC_EVERYWHERE inline ClipVertex cutEdge(const ClipVertex& a, const ClipVer
   return cut;
 }
 
-/// Whether a plane cuts nothing off.
+/// Whether the plane cuts nothing off.
 GALACTIC_EVERYWHERE inline bool liesWithin(const Polygon& polygon, int plane, float near) {
   for (int n = 0; n < polygon.count; ++n) {
     if (!(clipDistance(polygon.corners[n], plane, near) >= 0)) return false;
@@ -85,7 +84,7 @@ GALACTIC_EVERYWHERE inline void cutPolygon(const Polygon& from, int plane, float
   }
 }
 
-/// Vertex `number` of the state, whose texture coordinates are there where there is a texture.
+/// Vertex `number` of the state. If the surface has a texture, state.uv must be set.
 template <class State>
 GALACTIC_EVERYWHERE inline ClipVertex clipVertex(const State& state, std::uint32_t number) {
   const RenderCluster& cluster = *state.facts.cluster;
@@ -126,7 +125,7 @@ GALACTIC_EVERYWHERE inline Corner cornerOf(const State& state, std::uint32_t num
   return corner;
 }
 
-/// 1/256 pixel in the pane; false when the number is none.
+/// Projects a coordinate to 1/256 pixels in the image; false if it is NaN or out of range.
 GALACTIC_EVERYWHERE inline bool projected(float value, float inverse, float middle,
                                           std::int32_t& place) {
   constexpr float kMost = 1 << 22;
@@ -151,8 +150,8 @@ GALACTIC_EVERYWHERE inline bool toCorner(const VertexFrame& frame, const ClipVer
   return true;
 }
 
-/// The corners of what is left of a triangle of three vertices of the state: 3 or more, a fan
-/// around the first, or 0.
+/// Clips a triangle of three vertices of the state. Returns how many corners are left, 0 or at
+/// least 3, and writes them: a fan around the first one.
 template <class State>
 GALACTIC_EVERYWHERE inline int clipTriangle(const State& state, std::uint32_t a, std::uint32_t b,
                                             std::uint32_t c, Corner* ready) {

@@ -1,16 +1,18 @@
-// Which clusters of a pane's models may be seen, and in which order they are drawn. What is left
-// out here covers no pixel: all bounds are widened by what rounding and the move of vertices to
-// 1/256 pixel can amount to, so images do not depend on it. Cones of normals are not looked at: a
-// triangle seen almost from its side can turn to the viewer when its vertices are moved.
+// Finds which clusters of a pane's models may be visible, and in which order they are drawn.
+// Clusters that are left out here cover no pixel, so images do not depend on culling: all bounds
+// are widened by the largest error that rounding and moving vertices to 1/256 pixel can cause.
+// Cones of normals are not used, because a triangle that is seen almost edge-on can turn to the
+// viewer when its vertices are moved.
 namespace galactic::render {
 namespace {
 
-/// Of sums of a few products, relative to the sum of their magnitudes: a generous bound.
+/// A generous bound of the error of a sum of a few products, relative to the sum of their
+/// magnitudes.
 constexpr float kRounding = 2e-6F;
-/// Moves of vertices, in 1/256 pixel, widened.
+/// A generous bound of how far vertices are moved, in 1/256 pixel.
 constexpr float kMoved = 4;
 constexpr float kUnknownNearness = __builtin_inff();
-/// Of cluster_bounds, as schema/render.fbs has them.
+/// Rows of cluster_bounds, as schema/render.fbs defines them.
 constexpr std::uint32_t kCenterX = 0;
 constexpr std::uint32_t kHalfX = 3;
 
@@ -27,7 +29,7 @@ GALACTIC_EVERYWHERE inline PaneEdges paneEdges(const PaneTask& task) {
           units(task.top, task.image_height), units(task.top + task.height, task.image_height)};
 }
 
-/// A linear function of points of a model, and how far it may be off.
+/// A linear function of the points of a model, and a bound of its error.
 struct Row {
   float axis[3];
   float start, error;
@@ -55,12 +57,12 @@ GALACTIC_EVERYWHERE inline Row negative(const Row& a) {
 
 constexpr int kPlanes = 5;
 
-/// A model in front of a pane: a point may be seen where no plane is negative.
+/// A model in front of a pane: a point may be visible if no plane is negative there.
 struct CullFrame {
   Row w, x, y;
   Row planes[kPlanes];
   PaneEdges edges;
-  /// What the error of X / w and Y / w amounts to, times w.
+  /// A bound of the error of X / w and Y / w, times w.
   float projected_error;
 };
 
@@ -114,7 +116,7 @@ GALACTIC_EVERYWHERE inline Lanes reachOf(const Row& row, const BoxLanes& box) {
          spread(magnitude(row.axis[2])) * box.half[2];
 }
 
-/// Bit n: box n is not outside of one of the planes.
+/// Bit n: box n is not entirely outside any of the planes.
 GALACTIC_EVERYWHERE inline unsigned withinPlanes(const CullFrame& frame, const BoxLanes& box) {
   IntLanes outside = spread(0);
   for (const Row& plane : frame.planes) {
@@ -127,12 +129,13 @@ struct Interval {
   Lanes low, high;
 };
 
-/// What some boxes cover of the pane, pixels from its edges; both may lie outside of it.
+/// The part of the image that some boxes cover, in 1/256 pixels from its center; it may lie outside
+/// the pane.
 struct Footprint {
   Interval x, y;
 };
 
-/// The interval of (row / w) over the corners of the boxes, for boxes in front of the eye.
+/// The intervals of X / w and Y / w over the corners of the boxes, for boxes in front of the eye.
 GALACTIC_EVERYWHERE inline Footprint footprint(const CullFrame& frame, const BoxLanes& box) {
   Lanes w_steps[3];
   Lanes x_steps[3];
@@ -163,12 +166,12 @@ GALACTIC_EVERYWHERE inline Footprint footprint(const CullFrame& frame, const Box
   return result;
 }
 
-/// First and last pixel whose center lies in the interval; none where first > last.
+/// First and last pixel whose center lies in the interval; there is none if first > last.
 struct PixelRange {
   IntLanes first, last;
 };
 
-/// `edge`: where the pane begins, in the units of the interval; `count`: its pixels.
+/// `edge`: where the pane begins, in the units of the interval; `count`: how many pixels it has.
 GALACTIC_EVERYWHERE inline PixelRange pixelsWithin(const Interval& interval, Lanes error,
                                                    float edge, std::uint32_t count) {
   const Lanes low = (interval.low - error - spread(edge + kHalfPixel)) * spread(1.0F / kSubpixels);
@@ -178,12 +181,13 @@ GALACTIC_EVERYWHERE inline PixelRange pixelsWithin(const Interval& interval, Lan
   const Lanes low_clamped = clampTo(low, 0, most);
   const IntLanes low_int = toInt(low_clamped);
   const IntLanes first = low_int - (toFloat(low_int) < low_clamped);
-  // One more, so that what ends left of the first pixel has none.
+  // One is added before clamping, so that an interval that ends before the first pixel has no
+  // pixel.
   const IntLanes last = toInt(clampTo(high + spread(1.0F), 0, most)) - spread(1);
   return {first, last};
 }
 
-/// Nearness, tiles and pixels of a vector of clusters.
+/// Nearness and pixels of a vector of clusters. Bit n of `seen`: cluster n may be visible.
 struct BoxesSeen {
   unsigned seen;
   Lanes nearest;
@@ -191,7 +195,8 @@ struct BoxesSeen {
   PixelRange x, y;
 };
 
-/// The boxes of a block of eight, and of the one `next` numbers further where vectors take two.
+/// The boxes of a block of eight and, if a vector takes two blocks, of the block `next` numbers
+/// further.
 GALACTIC_EVERYWHERE inline BoxLanes loadBoxes(const float* bounds, std::size_t next = 0) {
   BoxLanes box;
   for (std::size_t n = 0; n < 3; ++n) {
@@ -216,7 +221,7 @@ GALACTIC_EVERYWHERE inline BoxesSeen lookAt(const PaneTask& task, const CullFram
   const IntLanes in_front = boxes.distance > spread(task.near);
   if ((signBits(in_front) & boxes.seen) == 0) return boxes;
   const Lanes inverse = spread(1.0F) / boxes.distance;
-  // A part in a million more: the division is rounded.
+  // Enlarged by a millionth, because the division is rounded.
   boxes.nearest = pick(in_front, inverse * spread(1.000001F), boxes.nearest);
   const Lanes error = spread(frame.projected_error) * inverse + spread(kMoved);
   const Footprint covered = footprint(frame, box);
@@ -229,7 +234,7 @@ GALACTIC_EVERYWHERE inline BoxesSeen lookAt(const PaneTask& task, const CullFram
   return boxes;
 }
 
-/// Buckets of equal ratio, sixteen for each doubling of the distance from the near plane.
+/// Buckets of distance, sixteen for each doubling of the near plane's distance.
 GALACTIC_EVERYWHERE inline IntLanes bucketsOf(Lanes distance, float near) {
   const IntLanes bits = as<IntLanes>(greater(distance, spread(near)));
   const IntLanes bucket = (bits - spread(as<std::int32_t>(near))) >> 19;

@@ -1,27 +1,27 @@
-// Triangles that are set up one by one: large ones, and what clipping leaves of others.
+// Triangles that are set up one by one: large ones, and the remains of clipped ones.
 namespace galactic::render {
 namespace {
 
 /// A corner of a triangle in the pane.
 struct Corner {
-  /// 1/256 pixel.
+  /// In 1/256 pixel.
   std::int32_t x, y;
   /// 1 / w.
   float z;
-  /// Texels; 0 to 255.
+  /// u and v in texels, the color from 0 to 255.
   float u, v;
   float color[4];
 };
 
-/// An edge function over a pane, from the center of its first pixel, divided by 256: that leaves
-/// its sign, as all pixels have the same remainder.
+/// An edge function over a pane, starting at the center of its first pixel, divided by 256 and
+/// rounded down. This does not change its sign.
 struct LongEdge {
   std::int64_t start;
   /// Changes per pixel.
   std::int32_t right, down;
-  /// From the first pixel of a tile to the one with the largest value.
+  /// The change from the first pixel of a tile to the one with the largest value.
   std::int64_t reach;
-  /// Of the pixels of a block.
+  /// The changes from the first pixel of a block to its pixels.
   IntLanes offsets;
 };
 
@@ -41,7 +41,7 @@ GALACTIC_EVERYWHERE inline LongEdge longEdge(const Corner& from, const Corner& t
   return edge;
 }
 
-/// A value over a pane, from the center of its first pixel.
+/// A value over a pane, starting at the center of its first pixel.
 struct Plane {
   double start, right, down;
 };
@@ -72,7 +72,7 @@ GALACTIC_EVERYWHERE inline void recordPlane(float* fields, const Plane& plane) {
   fields[2] = static_cast<float>(plane.start);
 }
 
-/// The record of a triangle, and that of its colors where it has them.
+/// Writes the record of a triangle and, if it has colors, the record of its colors.
 template <class State>
 GALACTIC_EVERYWHERE inline void recordLarge(const State& state, const LargeTriangle& triangle,
                                             const Plane& depth, float* record, float* colors) {
@@ -98,7 +98,7 @@ GALACTIC_EVERYWHERE inline void recordLarge(const State& state, const LargeTrian
   }
 }
 
-/// Tiles, first and last.
+/// First and last columns and rows of tiles.
 struct TileBox {
   std::int32_t left, right, top, bottom;
 };
@@ -112,7 +112,8 @@ GALACTIC_EVERYWHERE inline std::int32_t greaterOf(std::int32_t a, std::int32_t b
 GALACTIC_EVERYWHERE inline float lesserOf(float a, float b) { return a < b ? a : b; }
 GALACTIC_EVERYWHERE inline float greaterOf(float a, float b) { return a > b ? a : b; }
 
-/// Tiles with pixels whose centers lie between the positions; right < left when there are none.
+/// Tiles with pixels whose centers lie within the bounds of the corners; right < left if there are
+/// none.
 GALACTIC_EVERYWHERE inline TileBox tilesOf(const PaneTask& task, const LargeTriangle& triangle) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];
@@ -140,8 +141,8 @@ struct LargeSetup {
   float z_most;
 };
 
-/// The triangle of three corners that go clockwise on the screen where it shows its face; false
-/// where there is nothing to see. The corners must outlive it.
+/// Makes a triangle of three corners, which go clockwise on the screen if it shows its face.
+/// Returns false if it cannot be seen. The corners must outlive it.
 GALACTIC_EVERYWHERE inline bool faces(const Corner& a, const Corner& b, const Corner& c,
                                       bool two_sided, LargeTriangle& triangle) {
   const std::int64_t area = static_cast<std::int64_t>(b.x - a.x) * (c.y - a.y) -
@@ -158,7 +159,7 @@ GALACTIC_EVERYWHERE inline Plane depthOf(const LargeTriangle& triangle) {
                  static_cast<double>(triangle.corners[2]->z));
 }
 
-/// All but the offsets, which depend on the pixels of a vector.
+/// Sets all members but the offsets, which depend on the pixels of a vector.
 GALACTIC_EVERYWHERE inline LargeSetup setUpLarge(const LargeTriangle& triangle) {
   const Corner& a = *triangle.corners[0];
   const Corner& b = *triangle.corners[1];

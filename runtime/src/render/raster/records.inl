@@ -1,8 +1,8 @@
-// Records of small triangles: what shading has to know of them.
+// Records of small triangles: what shading has to know about them.
 namespace galactic::render {
 namespace {
 
-/// The planes of a vector of values, to three vectors.
+/// Writes the planes of a vector of values to three vectors.
 GALACTIC_EVERYWHERE inline void planeFields(const SmallGroup& group, Lanes a, Lanes b, Lanes c,
                                             Lanes* fields) {
   const GradientLanes change = gradient(group, a, b, c);
@@ -14,7 +14,7 @@ GALACTIC_EVERYWHERE inline void planeFields(const SmallGroup& group, Lanes a, La
   fields[2] = a + (change.right * dx + change.down * dy);
 }
 
-/// Field `number` of a record, from kTexels on; the planes of light are 0.
+/// Field `number` of a record, kTexels or later; 0 for the plane of light.
 GALACTIC_EVERYWHERE inline float surfaceField(const ClusterFacts& facts, std::uint32_t number) {
   switch (number) {
     case kTexels:
@@ -28,7 +28,8 @@ GALACTIC_EVERYWHERE inline float surfaceField(const ClusterFacts& facts, std::ui
   }
 }
 
-/// The fields before kTexels, which must be 0; state.uv is there where there is a texture.
+/// Writes the fields before kTexels, which must be 0 before. If the surface has a texture, state.uv
+/// must be set.
 template <class State>
 GALACTIC_EVERYWHERE inline void texturePlanes(const State& state, const SmallGroup& group,
                                               Lanes* fields) {
@@ -45,7 +46,7 @@ GALACTIC_EVERYWHERE inline void texturePlanes(const State& state, const SmallGro
   fields[kWDown] = group.z.down;
 }
 
-/// The fields from kTexels on.
+/// Writes the fields from kTexels on.
 template <class State>
 GALACTIC_EVERYWHERE inline void surfacePlanes(const State& state, const SmallGroup& group,
                                               Lanes* fields) {
@@ -58,7 +59,7 @@ GALACTIC_EVERYWHERE inline void surfacePlanes(const State& state, const SmallGro
               light(group.corners.c) * group.z_c, fields + (kLightRight - kTexels));
 }
 
-/// The planes of the colors: kColorFields.
+/// Writes the planes of the colors, kColorFields vectors.
 template <class State>
 GALACTIC_EVERYWHERE inline void colorPlanes(const State& state, const SmallGroup& group,
                                             Lanes* fields) {

@@ -1,15 +1,15 @@
-// Colors of a vector of pixels from the records of their triangles: texture coordinates by
-// perspective, the mip level whose texels come closest to one per pixel, bilinear between four
-// texels of it, as GL_LINEAR_MIPMAP_NEAREST does; colors are weighed as they are stored (sRGB), in
-// eighths of bits.
+// Colors of a vector of pixels from the records of their triangles: perspective-correct texture
+// coordinates, the mip level that comes closest to one texel per pixel, and bilinear filtering
+// between four of its texels, as with GL_LINEAR_MIPMAP_NEAREST. Colors are weighted as they are
+// stored (sRGB), with weights of 8 bits.
 namespace galactic::render {
 namespace {
 
 /// Where some pixels lie on their textures.
 struct TexturePlaces {
-  /// Texels of the largest level.
+  /// In texels of the largest level.
   Lanes u, v;
-  /// Square of the most texels per pixel.
+  /// Square of the texels per pixel, in the direction where there are more.
   Lanes squared_rate;
   IntLanes texels, kind;
 };
@@ -33,21 +33,21 @@ GALACTIC_EVERYWHERE inline IntLanes bilinear(const FourTexels& t, Lanes share_ri
 
 /// Levels of textures.
 struct Levels {
-  /// From texels of the largest level to those of this one.
+  /// Factor from texels of the largest level to texels of this one.
   Lanes scale;
-  /// The number of the first texel, log2 of the edge, and the edge less one.
+  /// The number of the first texel, log2 of the edge, and the edge minus 1.
   IntLanes first, log_edge, wrap;
 };
 
-/// The level with about one texel per pixel, of textures whose edges are 2^size.
+/// The level with about one texel per pixel, for textures whose edges are 2^size.
 GALACTIC_EVERYWHERE inline IntLanes levelOf(Lanes squared_rate, IntLanes size) {
-  // log4 of the doubled square, rounded down: changes half way between two levels. The bits of a
-  // number from bit 23 on are its log2 and 127.
+  // log4 of twice the square, rounded down, which changes half-way between two levels. The bits of
+  // a float from bit 23 on are its log2 plus 127.
   const IntLanes level = (as<IntLanes>(squared_rate) - spread(126 << 23)) >> 24;
   return lesser(greater(level, spread(0)), size);
 }
 
-/// The same level for all.
+/// The same level for all lanes.
 GALACTIC_EVERYWHERE inline Levels oneLevel(std::int32_t level, std::int32_t size, IntLanes texels) {
   const std::int32_t log_edge = size - level;
   const std::uint32_t before = 0x55555555U & ((4U << (2 * size)) - (4U << (2 * log_edge)));
@@ -58,18 +58,18 @@ GALACTIC_EVERYWHERE inline Levels oneLevel(std::int32_t level, std::int32_t size
 
 GALACTIC_EVERYWHERE inline Levels levelsAt(IntLanes level, IntLanes size, IntLanes texels) {
   const IntLanes log_edge = size - level;
-  // The sum of 4^n over the levels before.
+  // The texels of all larger levels: a sum of powers of 4.
   const IntLanes before =
       spread(0x55555555) & ((spread(4) << (size + size)) - (spread(4) << (log_edge + log_edge)));
   return {as<Lanes>((spread(127) - level) << 23), texels + before, log_edge,
           (spread(1) << log_edge) - spread(1)};
 }
 
-/// A place in one level of a texture: the left ones of the four texels around it and the shares of
-/// the right and the lower ones.
+/// A place in one level of a texture: the two left ones of the four texels around it, and the
+/// weights of the right and the lower texels.
 struct LevelPlace {
   IntLanes upper_left, lower_left;
-  /// From the left texels to the right ones: 1, but where the row begins again.
+  /// From the left texels to the right ones: 1, except where the texture repeats.
   IntLanes to_right;
   Lanes share_right, share_down;
   LaneSet begins_again;
@@ -96,8 +96,8 @@ GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
   return reinterpret_cast<const std::int32_t*>(task.texel_bases[number]);
 }
 
-/// Texels of one base. Most left texels have their right ones behind them: both are read at once,
-/// which halves the work where lanes are many. `wraps`: for one lane or more that is not so.
+/// Reads texels of one base. If the right texels follow the left ones in memory, both are read at
+/// once, which halves the work of vectors. `wraps`: in at least one lane they do not.
 [[gnu::always_inline]] GALACTIC_EVERYWHERE inline FourTexels readTexels(const std::int32_t* from,
                                                                         const LevelPlace& place,
                                                                         bool wraps) {
@@ -110,32 +110,33 @@ GALACTIC_EVERYWHERE inline const std::int32_t* texelBase(const PaneTask& task,
           gather(from, place.lower_left), gather(from, place.lower_left + place.to_right)};
 }
 
-/// Lanes that are not of the set read texel 0 of the base.
+/// Makes lanes outside the set read texel 0 of the base.
 GALACTIC_EVERYWHERE inline void keepOnly(LaneSet set, LevelPlace& place) {
   place.upper_left = pickFrom(set, place.upper_left, spread(0));
   place.lower_left = pickFrom(set, place.lower_left, spread(0));
   place.to_right = pickFrom(set, place.to_right, spread(0));
 }
 
-/// Where the texels of some pixels lie, and what decides how they are read: with these numbers at
-/// hand, reading waits for nothing.
+/// Where the texels of some pixels lie, and how they have to be read. It is computed in advance, so
+/// that reading need not wait for these numbers.
 struct SurfacePlace {
   LevelPlace place;
-  /// Bit n: lane n has a texture; it has one of another base than the first of them.
+  /// Bit n of `textured`: lane n has a texture. Bit n of `others`: its texture has another base
+  /// than that of the first textured lane.
   unsigned textured, others;
-  /// Of the first one.
+  /// The base of the first textured lane.
   std::int32_t base;
   bool wraps;
 };
 
 GALACTIC_EVERYWHERE inline IntLanes baseOf(IntLanes kind) { return (kind >> 8) & 0x3FFFFF; }
 
-/// Lanes whose surface has one color; so are those without a triangle.
+/// Lanes whose surface has a single color, including those without a triangle.
 GALACTIC_EVERYWHERE inline LaneSet flatLanes(IntLanes kind) {
   return whereEqual(kind & 0xFF, spread(static_cast<std::int32_t>(kFlatSurface)));
 }
 
-/// Of places of which one lane or more has a texture; `flat`: see flatLanes().
+/// At least one lane must have a texture. `flat`: see flatLanes().
 GALACTIC_EVERYWHERE inline void placeSurface(const TexturePlaces& places, LaneSet flat,
                                              SurfacePlace& surface) {
   const IntLanes kind = places.kind;
@@ -150,7 +151,7 @@ GALACTIC_EVERYWHERE inline void placeSurface(const TexturePlaces& places, LaneSe
   surface.others = ~bitsOf(whereEqual(baseOf(kind), first)) & surface.textured;
 }
 
-/// Texels of several bases.
+/// Reads texels of several bases.
 [[gnu::noinline]] GALACTIC_EVERYWHERE inline FourTexels readMixed(const PaneTask& task,
                                                                   const SurfacePlace& surface,
                                                                   IntLanes kind) {
@@ -170,7 +171,7 @@ GALACTIC_EVERYWHERE inline void placeSurface(const TexturePlaces& places, LaneSe
   return texels;
 }
 
-/// Texels, or the colors of flat surfaces: of places of which one lane or more has a texture.
+/// Texels, or the colors of flat surfaces. At least one lane must have a texture.
 [[gnu::always_inline]] GALACTIC_EVERYWHERE inline IntLanes sampleAt(const PaneTask& task,
                                                                     const TexturePlaces& places,
                                                                     const SurfacePlace& surface) {
@@ -200,7 +201,7 @@ struct OneRecord {
   }
 };
 
-/// Some pixels: their places in the pane, from the center of its first pixel, and w.
+/// Some pixels: their places in the pane, counted from the center of its first pixel, and their w.
 struct PixelLanes {
   Lanes x, y, w;
 };
@@ -224,7 +225,7 @@ GALACTIC_EVERYWHERE inline TexturePlaces texturePlaces(const Records& records,
           records.intField(kKind)};
 }
 
-/// sampleTexels() where all lanes have one record.
+/// Like sampleTexels(), if all lanes have the same record.
 GALACTIC_EVERYWHERE inline IntLanes sampleOne(const PaneTask& task, const OneRecord& record,
                                               const PixelLanes& pixels) {
   const auto kind = as<std::int32_t>(record.record[kKind]);
@@ -234,7 +235,8 @@ GALACTIC_EVERYWHERE inline IntLanes sampleOne(const PaneTask& task, const OneRec
   const TexturePlaces places = texturePlaces(record, pixels);
   const IntLanes size = spread(log_edge);
   IntLanes level = levelOf(places.squared_rate, size);
-  // Mostly they need one level: numbers instead of vectors.
+  // Most often all lanes need the same level, which can be computed with numbers instead of
+  // vectors.
   const std::int32_t first = level[0];
   const bool alike = signBits(level == spread(first)) == kAllLanes;
   const Levels levels = alike ? oneLevel(first, log_edge, texels) : levelsAt(level, size, texels);
@@ -250,7 +252,7 @@ GALACTIC_EVERYWHERE inline IntLanes byteProduct(IntLanes a, IntLanes b) {
   return (product + (product >> 8)) >> 8;
 }
 
-/// Texels times the colors of the corners, interpolated by perspective.
+/// Texels times the colors of the corners, interpolated with perspective.
 template <class Records>
 GALACTIC_EVERYWHERE inline IntLanes timesColors(IntLanes texels, const Records& colors,
                                                 const PixelLanes& pixels) {
@@ -266,7 +268,7 @@ GALACTIC_EVERYWHERE inline IntLanes timesColors(IntLanes texels, const Records& 
   return result;
 }
 
-/// Whether the surface of a triangle is there: all bits, or none.
+/// Whether the surface of a triangle has no hole at these pixels: all bits, or none.
 GALACTIC_EVERYWHERE inline IntLanes alphaPasses(const PaneTask& task, const OneRecord& record,
                                                 const OneRecord& colors, std::int32_t least_alpha,
                                                 const PixelLanes& pixels) {
@@ -275,14 +277,14 @@ GALACTIC_EVERYWHERE inline IntLanes alphaPasses(const PaneTask& task, const OneR
   return ((texels >> 24) & 0xFF) >= spread(least_alpha);
 }
 
-/// What timesColors() multiplies by where red, green and blue are one. `light`: the record's fields
-/// from kLightRight on.
+/// The factor of timesColors() if red, green and blue are equal. `light`: the record's fields from
+/// kLightRight on.
 GALACTIC_EVERYWHERE inline IntLanes lightAt(const Lanes* light, const PixelLanes& pixels) {
   const Lanes value = (light[0] * pixels.x + light[1] * pixels.y + light[2]) * pixels.w;
   return toInt(clampTo(value + spread(0.5F), 0, 255));
 }
 
-/// timesColors() where red, green and blue are one, and alpha is whole: the same bits.
+/// Returns the same bits as timesColors() if red, green and blue are equal and alpha is 255.
 GALACTIC_EVERYWHERE inline IntLanes timesLight(IntLanes texels, IntLanes light) {
   const auto both = as<ShortLanes>(light | light << 16);
   const ShortLanes low = byteProducts(as<ShortLanes>(texels & 0x00FF00FF), both);

@@ -1,16 +1,16 @@
-// Triangles of a cluster: which can cover a pixel, and the set-up of a vector at a time.
+// Triangles of a cluster: which of them can cover a pixel, and the set-up of a vector of them.
 namespace galactic::render {
 namespace {
 
-/// Triangles of at most this extent, in 1/256 pixel, are set up in 32 bits, by vectors.
+/// Triangles that are no larger than this, in 1/256 pixel, are set up as vectors of 32-bit numbers.
 constexpr std::int32_t kSmall = 64 * kSubpixels;
 
-/// Corners of some triangles, each of them as the numbers of vertices in its cluster.
+/// Corners of some triangles, given by the numbers of the vertices in their cluster.
 struct CornerLanes {
   IntLanes a, b, c;
 };
 
-/// Corners in one integer, the first in the lowest byte.
+/// Corners in one integer, with the first in the lowest byte.
 GALACTIC_EVERYWHERE inline IntLanes packed(const CornerLanes& corners) {
   return corners.a | corners.b << 8 | corners.c << 16;
 }
@@ -18,9 +18,9 @@ GALACTIC_EVERYWHERE inline CornerLanes unpacked(IntLanes corners) {
   return {corners & 0xFF, (corners >> 8) & 0xFF, (corners >> 16) & 0xFF};
 }
 
-/// The corners of a vector of triangles: of the block of eight, and of the one `next` numbers
-/// further where vectors take two. Counter-clockwise from outside is clockwise where rows run down:
-/// two corners change places.
+/// The corners of a vector of triangles: of a block of eight and, if a vector takes two blocks, of
+/// the block `next` numbers further. Two corners are swapped: packs have corners counter-clockwise
+/// as seen from outside, drawing has them clockwise on the screen.
 GALACTIC_EVERYWHERE inline CornerLanes cornersAt(const std::uint8_t* block, std::size_t next = 0) {
   return {loadRows(block, next), loadRows(block + std::size_t{2} * kWidth, next),
           loadRows(block + kWidth, next)};
@@ -57,21 +57,21 @@ GALACTIC_EVERYWHERE inline IntLanes lastPixel(IntLanes highest) {
   return (highest - spread(kSubpixels / 2)) >> 8;
 }
 
-/// Twice the area, positive when the corners go clockwise on the screen. Exact for small triangles.
+/// Twice the area, positive if the corners go clockwise on the screen. Exact for small triangles.
 GALACTIC_EVERYWHERE inline IntLanes doubleArea(const PointLanes& a, const PointLanes& b,
                                                const PointLanes& c) {
   return wrapSubtract(wrapMultiply(b.x - a.x, c.y - a.y), wrapMultiply(c.x - a.x, b.y - a.y));
 }
 
-/// What becomes of some triangles: bit n for triangle n.
+/// How some triangles are drawn, if at all: bit n for triangle n.
 struct Sorting {
   unsigned small, large;
-  /// Of the small ones: pixels that they can cover, first and last.
+  /// First and last pixels that the small ones can cover.
   IntLanes first_x, last_x, first_y, last_y;
 };
 
-/// Bounds of a pane, and whether both sides of triangles show: by value, so that no store can
-/// change them.
+/// Bounds of a pane, and whether both sides of triangles are visible. They are passed by value, so
+/// that the compiler knows that no store changes them.
 struct SortLimits {
   IntLanes last_x, last_y, two_sided;
 };
@@ -83,11 +83,11 @@ GALACTIC_EVERYWHERE inline SortLimits sortLimits(const PaneTask& task,
           spread(cluster.two_sided != 0 ? -1 : 0)};
 }
 
-/// Of a vertex's bad bits: those of the clip planes.
+/// The bits of ClusterState::bad that belong to clip planes.
 constexpr std::int32_t kClipBits = 31;
 
 /// Which of some triangles have no bad corner, and which have to be cut: bit n for triangle n. The
-/// rest lies beyond one plane with all corners.
+/// others have all their corners beyond the same plane.
 struct ClipSorting {
   unsigned whole, cut;
 };
@@ -114,7 +114,7 @@ GALACTIC_EVERYWHERE inline Sorting sortVector(const SortLimits limits, const Clu
   const IntLanes first_y = greater(firstPixel(y_low), spread(0));
   const IntLanes last_x = lesser(lastPixel(x_high), limits.last_x);
   const IntLanes last_y = lesser(lastPixel(y_high), limits.last_y);
-  // By their signs: numbers are far from where their differences wrap around.
+  // Compares by the signs of differences, which cannot wrap around here.
   const IntLanes missed = (last_x - first_x) | (last_y - first_y);
   const IntLanes large = (spread(kSmall) - (x_high - x_low)) | (spread(kSmall) - (y_high - y_low));
   const IntLanes area = doubleArea(a, b, c);
@@ -128,18 +128,18 @@ GALACTIC_EVERYWHERE inline Sorting sortVector(const SortLimits limits, const Clu
           last_y};
 }
 
-/// The tiles that some triangles touch, at most two in a row and in a column; those whose mask is 0
-/// do not count.
+/// The tiles that some triangles touch, at most two in a row and in a column. Triangles whose mask
+/// is 0 do not count.
 struct TouchedTiles {
   IntLanes left, right, top, bottom, mask;
 };
 
-/// At most the least 1/w of each tile of a pane, row after row; one more may be read.
+/// A lower bound of the least 1/w of each tile of a pane, row by row. One more number may be read.
 struct TileDepths {
   const float* depth;
   std::int32_t columns;
 
-  /// The least 1/w of tiles.
+  /// The least 1/w of the tiles of each triangle.
   GALACTIC_EVERYWHERE Lanes farthest(const TouchedTiles& tiles) const {
     const IntLanes upper = tiles.top * spread(columns) + tiles.left;
     const IntLanes lower = tiles.bottom * spread(columns) + tiles.left;
@@ -149,8 +149,8 @@ struct TileDepths {
   }
 };
 
-/// Which of some small triangles lie behind all that was drawn in their tiles: bit n for triangle
-/// n. Those that touch more than two tiles in a row or a column do not count.
+/// Which of some small triangles lie behind everything that was drawn in their tiles: bit n for
+/// triangle n. Triangles that touch more than two tiles in a row or a column do not count.
 template <class Tiles>
 GALACTIC_EVERYWHERE inline unsigned behindTiles(const Tiles& tiles, const ClusterState& state,
                                                 const Sorting& sorting,
@@ -159,7 +159,7 @@ GALACTIC_EVERYWHERE inline unsigned behindTiles(const Tiles& tiles, const Cluste
       mostOf(lookUp(state.z, corners.a), lookUp(state.z, corners.b), lookUp(state.z, corners.c));
   TouchedTiles touched{sorting.first_x >> 3, sorting.last_x >> 3, sorting.first_y >> 3,
                        sorting.last_y >> 3, spread(0)};
-  // Those that cover no pixel may lie outside of the pane.
+  // The last two terms exclude triangles that cover no pixel, since they may lie outside the pane.
   const IntLanes wide = touched.right - touched.left;
   const IntLanes high = touched.bottom - touched.top;
   touched.mask = ~(wide | (spread(1) - wide) | high | (spread(1) - high) |
@@ -168,7 +168,7 @@ GALACTIC_EVERYWHERE inline unsigned behindTiles(const Tiles& tiles, const Cluste
   return signBits((tiles.farthest(touched) >= nearest) & touched.mask);
 }
 
-/// Two numbers per triangle that say how a value at its corners changes over the pane.
+/// How a value that is given at the corners of a triangle changes per pixel to the right and down.
 struct GradientLanes {
   Lanes right, down;
 };
@@ -177,7 +177,7 @@ struct GradientLanes {
 struct SmallGroup {
   CornerLanes corners;
   PointLanes a, b, c;
-  /// Of the edges from a, and 256 / double area.
+  /// The edges from a to b and to c, and 256 / double area.
   Lanes ab_x, ab_y, ac_x, ac_y, per_area;
   /// 1/w at the corners, and how it changes.
   Lanes z_a, z_b, z_c;
@@ -192,15 +192,16 @@ GALACTIC_EVERYWHERE inline GradientLanes gradient(const SmallGroup& group, Lanes
           (group.ab_x * ac - group.ac_x * ab) * group.per_area};
 }
 
-/// A vector of triangles ready to be drawn. Starts are at the center of the first pixel of the
-/// first block, those of edge functions of the first vector of blocks; edge functions are not
-/// negative inside; "right" and "down": changes per pixel.
+/// A vector of triangles, ready to be drawn. Values are at the center of the first pixel of the
+/// first block or, for edge functions, of the first vector of blocks. Edge functions are not
+/// negative inside the triangle. "right" and "down": changes per pixel.
 struct alignas(kGroupAlignment) GroupSetup {
   std::int32_t edge[3][kLanes], edge_right[3][kLanes], edge_down[3][kLanes];
   float z[kLanes], z_right[kLanes], z_down[kLanes];
-  /// Of 1/w at the corners: no pixel leaves this range, however thin the triangle.
+  /// Range of 1/w at the corners. Pixels are clamped to it, because 1/w of a thin triangle could
+  /// leave it.
   float z_low[kLanes], z_high[kLanes];
-  /// First and last, in blocks.
+  /// First and last column and row, in blocks.
   std::int32_t first_column[kLanes], last_column[kLanes], first_row[kLanes], last_row[kLanes];
 };
 
@@ -209,14 +210,15 @@ GALACTIC_EVERYWHERE inline void setUpEdge(GroupSetup& setup, int number, const P
   const IntLanes dx = to.x - from.x;
   const IntLanes dy = to.y - from.y;
   const IntLanes value = dx * (start.y - from.y) - dy * (start.x - from.x);
-  // An edge keeps the pixels on it when it is a left one, or a top one that lies level.
+  // Pixels exactly on an edge belong to the triangle if the edge is a left one or a horizontal
+  // upper one.
   const IntLanes keeps = (dy < spread(0)) | ((dy == spread(0)) & (dx > spread(0)));
   store(setup.edge[number], value + ~keeps);
   store(setup.edge_right[number], dy * spread(-kSubpixels));
   store(setup.edge_down[number], dx * spread(kSubpixels));
 }
 
-/// Sets up a vector of small triangles; turns those around that show their back.
+/// Sets up a vector of small triangles. Turns around those that show their back.
 template <class State>
 GALACTIC_EVERYWHERE inline void setUpGroup(const PaneTask& task, const State& state,
                                            IntLanes packed_corners, SmallGroup& group,

@@ -1,20 +1,20 @@
-// Vertices of a cluster on their way to the pane.
+// Takes vertices of a cluster to the pane.
 namespace galactic::render {
 namespace {
 
-/// Vertices whose X / w or Y / w is larger, in 1/256 pixel, are cut off: integers of their
-/// differences stay small. Four times the largest image.
+/// Vertices whose X / w or Y / w is larger than this, in 1/256 pixel, are cut off, so that
+/// differences of integer positions stay small. Twice the edge of the largest image.
 constexpr float kGuard = 1 << 21;
-/// Added to a number under 2^22 it leaves the nearest whole number in the lowest bits.
+/// Adding this to a number below 2^22 leaves the nearest whole number in the lowest bits.
 constexpr float kToWhole = 12582912.0F;
 
 /// What is the same for all vertices of a model.
 struct VertexFrame {
-  /// For points on the lattice: the step is in the rows.
+  /// Rows for points on the lattice: they contain the step.
   float w[4], x[4], y[4];
-  /// Of the pane's first pixel's corner in the image, in 1/256 pixel.
+  /// The pane's upper left corner in the image, in 1/256 pixel.
   std::int32_t left, top;
-  /// Of the image.
+  /// The middle of the image, in 1/256 pixel.
   float middle_x, middle_y;
   float near;
 };
@@ -45,7 +45,7 @@ struct ClusterFacts {
   SurfaceTexels surface;
   /// kHasColors, kHasLight or 0.
   std::uint32_t color_kind;
-  /// In images.
+  /// The id that images show.
   std::uint32_t semantic;
 
   GALACTIC_EVERYWHERE bool isTextured() const { return (surface.kind & 0xFFU) != kFlatSurface; }
@@ -64,13 +64,13 @@ GALACTIC_EVERYWHERE inline ClusterFacts clusterFacts(const PlacedModel& placed,
   return {&pack, cluster, pack.surfaces[cluster->material], kind, semantic};
 }
 
-/// Of its vertices; not to be read where color_kind is 0.
+/// The colors of the cluster's vertices; null if color_kind is 0.
 GALACTIC_EVERYWHERE inline const std::int32_t* clusterColors(const ClusterFacts& facts) {
   if (facts.color_kind == 0) return nullptr;
   return reinterpret_cast<const std::int32_t*>(facts.pack->colors) + facts.cluster->first_vertex;
 }
 
-/// The rows of the eight vertices that vertex `number` is one of.
+/// The rows of the block of eight vertices that contains vertex `number`.
 GALACTIC_EVERYWHERE inline const std::uint16_t* vertexBlock(const ClusterFacts& facts,
                                                             std::uint32_t number) {
   return facts.pack->vertices +
@@ -78,27 +78,27 @@ GALACTIC_EVERYWHERE inline const std::uint16_t* vertexBlock(const ClusterFacts& 
              kVertexRows;
 }
 
-/// A cluster in work.
+/// A cluster that is being drawn.
 struct ClusterState {
-  /// A table of pairs: x and y in the pane, 1/256 pixel from its upper left corner. Not set where
-  /// `bad`.
+  /// A table of pairs: x and y in the pane, 1/256 pixel from its upper left corner. Meaningless for
+  /// `bad` vertices.
   alignas(64) std::int32_t xy[2 * kMostInCluster];
   /// 1 / w.
   alignas(64) float z[kMostInCluster];
   /// A table of pairs: texture coordinates; see readCoordinates().
   alignas(64) float uv[2 * kMostInCluster];
-  /// Bit n: on the wrong side of clip plane n (see clipDistance()), and of more planes where
-  /// markBeside() looked at them.
+  /// Bit n: the vertex is on the wrong side of clip plane n (see clipDistance()), or of one of the
+  /// planes that markBeside() adds.
   alignas(64) std::int32_t bad[kMostInCluster];
   bool any_bad;
   bool has_coordinates;
 
   ClusterFacts facts;
   const VertexFrame* frame;
-  /// Of the vertices, where color_kind is not 0.
+  /// Colors of the vertices; only if color_kind is not 0.
   const std::int32_t* colors;
 
-  /// The number in the cluster of a vertex in these arrays.
+  /// The number in the cluster of the vertex with this number in these arrays.
   GALACTIC_EVERYWHERE std::uint32_t vertex(std::uint32_t number) const { return number; }
 };
 
@@ -111,8 +111,8 @@ GALACTIC_EVERYWHERE inline IntLanes wholeNumber(Lanes value) {
   return as<IntLanes>(value + spread(kToWhole)) - spread(as<std::int32_t>(kToWhole));
 }
 
-/// The rows of a vector of vertices: of a block of eight, and of the one `next` numbers further
-/// where vectors take two.
+/// The rows of a vector of vertices: of a block of eight and, if a vector takes two blocks, of the
+/// block `next` numbers further.
 struct VertexRows {
   const std::uint16_t* block;
   std::size_t next = 0;
@@ -122,13 +122,13 @@ struct VertexRows {
   }
 };
 
-/// Those from vertex `first` on; `block` has it.
+/// The rows from vertex `first` on, which is the first of `block`.
 GALACTIC_EVERYWHERE inline VertexRows vertexRows(const RenderCluster& cluster,
                                                  const std::uint16_t* block, std::uint32_t first) {
   return {block, first + kWidth < cluster.vertex_count ? kVertexRows * kWidth : 0};
 }
 
-/// Vertices before the division by w: numbers as in PlacedModel.
+/// Vertices before the division by w; see PlacedModel for their numbers.
 struct VertexLanes {
   Lanes w, right, down;
 };
@@ -142,7 +142,7 @@ GALACTIC_EVERYWHERE inline VertexLanes vertexLanes(const VertexFrame& frame,
   return {along(frame.w, x, y, z), along(frame.x, x, y, z), along(frame.y, x, y, z)};
 }
 
-/// A vector of vertices from `first` on: returns which are good.
+/// Places a vector of vertices from `first` on. Returns which of them need no clipping, as bits.
 template <class State>
 GALACTIC_EVERYWHERE inline unsigned placeVector(const VertexFrame& frame,
                                                 const RenderCluster& cluster,
@@ -173,7 +173,8 @@ GALACTIC_EVERYWHERE inline unsigned placeVector(const VertexFrame& frame,
   return good_bits;
 }
 
-/// Texture coordinates of a vector of vertices from `first` on, in texels of the largest level.
+/// Reads the texture coordinates of a vector of vertices from `first` on, in texels of the largest
+/// level.
 template <class State>
 GALACTIC_EVERYWHERE inline void readVector(const VertexRows& rows, std::uint32_t first,
                                            State& state) {
