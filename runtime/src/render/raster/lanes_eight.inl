@@ -1,5 +1,5 @@
-// Vectors of eight: the few operations that the kernels are made of. Written with the compilers'
-// vector extensions; where AVX2 has an instruction that they do not find, it is named. Both ways
+// Vectors of eight: the few operations that the kernels are made of. They use the compilers' vector
+// extensions and, where compilers do not find the right instruction of AVX2, its intrinsic. Both
 // give the same bits.
 #include <cstddef>
 #include <cstdint>
@@ -17,19 +17,19 @@ using WordLanes = std::uint32_t __attribute__((vector_size(32)));
 using ShortLanes = std::uint16_t __attribute__((vector_size(32)));
 using EightBytes = std::uint8_t __attribute__((vector_size(8)));
 using EightShorts = std::uint16_t __attribute__((vector_size(16)));
-/// Some of the lanes, by their signs.
+/// A set of lanes: those whose sign is set.
 using LaneSet = IntLanes;
 
-/// Of the rows in pools, and of what is stored in blocks.
+/// Width of the rows in pools and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
-/// Of vectors, and the blocks that fill one.
+/// Lanes of a vector, and how many blocks fill it.
 constexpr std::uint32_t kLanes = 8;
 constexpr std::uint32_t kBlocks = 1;
 constexpr unsigned kAllLanes = 0xFF;
 constexpr std::size_t kVectorBytes = 32;
 constexpr std::size_t kGroupAlignment = 64;
 
-/// Numbers of twice the size: half as many fill a vector.
+/// Half as many numbers of twice the size fill a vector.
 constexpr std::uint32_t kHalf = kLanes / 2;
 using Doubles = double __attribute__((vector_size(32)));
 using HalfInts = std::int32_t __attribute__((vector_size(16)));
@@ -80,7 +80,7 @@ inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
 #endif
 }
 
-/// One lane, in all.
+/// One lane, copied to all lanes.
 inline IntLanes laneOf(IntLanes v, int lane) {
 #if defined(__AVX2__)
   return as<IntLanes>(_mm256_permutevar8x32_epi32(as<__m256i>(v), as<__m256i>(spread(lane))));
@@ -89,7 +89,7 @@ inline IntLanes laneOf(IntLanes v, int lane) {
 #endif
 }
 
-/// The second where the comparison fails, as with numbers that are none.
+/// Returns the second number if the comparison fails, as with NaN.
 inline Lanes lesser(Lanes a, Lanes b) {
 #if defined(__AVX2__)
   return as<Lanes>(_mm256_min_ps(as<__m256>(a), as<__m256>(b)));
@@ -153,7 +153,7 @@ inline unsigned signBits(IntLanes v) {
 inline unsigned bitsOf(LaneSet set) { return signBits(set); }
 inline LaneSet eitherOf(LaneSet a, LaneSet b) { return a | b; }
 inline LaneSet noLanes() { return spread(0); }
-/// Those whose bits are set.
+/// The lanes whose bits are set.
 inline LaneSet setOf(unsigned bits) {
   const IntLanes to_sign{31, 30, 29, 28, 27, 26, 25, 24};
   return spread(static_cast<std::int32_t>(bits)) << to_sign;
@@ -177,15 +177,15 @@ inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes no) {
   return as<IntLanes>(pickFrom(set, as<Lanes>(yes), as<Lanes>(no)));
 }
 
-/// Writes lanes of the set.
+/// Writes the lanes of the set.
 inline void storeFrom(LaneSet set, void* to, IntLanes v) {
   store(to, pickFrom(set, v, load<IntLanes>(to)));
 }
 
-/// Of bits that are not all 0: the number of the lowest one.
+/// The number of the lowest bit that is set. At least one must be.
 inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
 
-/// Products and differences that may wrap around: of lanes whose result is not used.
+/// Products and differences that may wrap around, in lanes whose result is not used.
 inline IntLanes wrapMultiply(IntLanes a, IntLanes b) {
   return as<IntLanes>(as<WordLanes>(a) * as<WordLanes>(b));
 }
@@ -207,13 +207,13 @@ inline IntLanes gather(const std::int32_t* from, IntLanes at) {
   return as<IntLanes>(gather(reinterpret_cast<const float*>(from), at));
 }
 
-/// Entries of a table, by their numbers.
+/// Looks up entries of a table by their numbers.
 template <class Element>
 inline auto lookUp(const Element* table, IntLanes at) {
   return gather(table, at);
 }
 
-/// Those of small tables lie in memory, too.
+/// Small tables lie in memory too, so none has entries that are cheaper to look up.
 constexpr std::uint32_t kFewEntries = 0;
 inline Lanes lookUpFew(const float* table, IntLanes at) { return lookUp(table, at); }
 
@@ -222,7 +222,7 @@ struct Pair {
   Vector first, second;
 };
 
-/// Elements kStride * at and the ones behind them.
+/// Elements kStride * at and kStride * at + 1.
 template <int kStride>
 inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 #if defined(__AVX2__)
@@ -257,15 +257,15 @@ inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from, const IntLanes& 
 #endif
 }
 
-/// Elements at, or the lesser of these and the ones behind them where `both`, a mask, is set. All
-/// of them are read.
+/// Elements at or, in lanes where the mask `both` is set, the lesser of elements at and at + 1.
+/// Both are always read.
 inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
   const Pair<IntLanes> two = gatherTwo<1>(reinterpret_cast<const std::int32_t*>(from), at);
   const auto first = as<Lanes>(two.first);
   return lesser(first, pick(both, as<Lanes>(two.second), first));
 }
 
-/// Entries of a table of pairs, by their numbers.
+/// Looks up entries of a table of pairs by their numbers.
 inline Pair<IntLanes> lookUpPairs(const std::int32_t* table, IntLanes at) {
   return gatherTwo<2>(table, at);
 }
@@ -280,7 +280,7 @@ inline Pair<Element> pairAt(const Element* table, std::uint32_t number) {
 
 using Quad = float __attribute__((vector_size(16)));
 
-/// Elements at[lane] and the three behind them become a vector each.
+/// Reads elements at[lane] to at[lane] + 3 of each lane into a vector each.
 inline void gatherFour(const float* from, const std::int32_t* at, Lanes* fields) {
   Lanes pairs[4];
   for (int n = 0; n < 4; ++n) {
@@ -298,8 +298,8 @@ inline void gatherFour(const float* from, const std::int32_t* at, Lanes* fields)
   fields[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-/// Eight numbers of rows become a vector each: the lanes are those of the row that begins at number
-/// at[lane]; all lanes often have the same one.
+/// Reads eight numbers of the row that begins at number at[lane], for each lane, into a vector
+/// each. Often all lanes have the same row.
 [[gnu::always_inline]] inline void gatherRows(const float* rows, const std::int32_t* at,
                                               Lanes* fields) {
   if (signBits(load<IntLanes>(at) == spread(at[0])) == kAllLanes) {
@@ -318,16 +318,16 @@ inline void storePairs(Element* to, Vector first, Vector second) {
   store(to + kWidth, __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15));
 }
 
-/// Two rows of pixels to an image, whose rows lie `stride` bytes apart.
+/// Writes two rows of pixels to an image whose rows lie `stride` bytes apart.
 inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
   store(to, __builtin_shufflevector(v, v, 0, 1, 2, 3));
   store(to + stride, __builtin_shufflevector(v, v, 4, 5, 6, 7));
 }
 
-/// What blend() takes for shares within [0, 1], alike in both halves of a lane.
+/// The weight that blend() takes for a share within [0, 1], in both halves of a lane.
 inline ShortLanes blendWeight(Lanes share) {
 #if defined(__AVX2__)
-  // -128 times the weight, of 256.
+  // -128 times the weight, which is in 256ths.
   const IntLanes negative = toInt(share * spread(-256.0F) - spread(0.5F));
   return as<ShortLanes>((negative << 7 & 0xFFFF) | negative << 23);
 #else
@@ -336,17 +336,17 @@ inline ShortLanes blendWeight(Lanes share) {
 #endif
 }
 
-/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes.
+/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which hold bytes.
 inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight) {
 #if defined(__AVX2__)
-  // The instruction divides by 2^15, and rounds.
+  // The instruction divides by 2^15 and rounds.
   return p + as<ShortLanes>(_mm256_mulhrs_epi16(as<__m256i>(p - q), as<__m256i>(weight)));
 #else
   return (p * (256 - weight) + q * weight + 128) >> 8;
 #endif
 }
 
-/// a * b / 255, rounded, for 16-bit halves that are bytes.
+/// a * b / 255, rounded, for 16-bit halves that hold bytes.
 inline ShortLanes byteProducts(ShortLanes a, ShortLanes b) {
   const ShortLanes product = a * b + 128;
 #if defined(__AVX2__)
@@ -357,12 +357,12 @@ inline ShortLanes byteProducts(ShortLanes a, ShortLanes b) {
 #endif
 }
 
-/// Whole numbers as both types.
+/// Whole numbers in both types.
 struct Whole {
   Lanes value;
   IntLanes whole;
 };
-/// Those not above lanes under 2^22.
+/// Rounds down. Lanes must be below 2^22.
 inline Whole roundedDown(Lanes v) {
 #if defined(__AVX2__)
   const auto floats = as<Lanes>(_mm256_floor_ps(as<__m256>(v)));
@@ -374,7 +374,7 @@ inline Whole roundedDown(Lanes v) {
 #endif
 }
 
-/// For each set of lanes their numbers, lowest first, and then lane 0.
+/// For each set of lanes, their numbers in ascending order, followed by lane 0.
 struct PickOrders {
   alignas(64) std::uint8_t order[256][kWidth] = {};
   constexpr PickOrders() {
@@ -397,7 +397,7 @@ inline IntLanes widen(EightBytes v) {
 #endif
 }
 
-/// A block of eight: `next`, where there is more, is for wider vectors.
+/// Loads a block of eight. `next` is for wider vectors: where their second block lies.
 inline IntLanes loadRows(const std::uint16_t* from, std::size_t /*next*/) {
   return widen(load<EightShorts>(from));
 }
@@ -406,14 +406,14 @@ inline IntLanes loadRows(const std::uint8_t* from, std::size_t /*next*/) {
 }
 inline Lanes loadRows(const float* from, std::size_t /*next*/) { return load<Lanes>(from); }
 
-/// Four numbers of each of two rows, which lie `stride` numbers apart.
+/// Loads four numbers of each of two rows that lie `stride` numbers apart.
 inline Lanes loadSquare(const float* from, std::size_t stride) {
   return __builtin_shufflevector(load<Quad>(from), load<Quad>(from + stride), 0, 1, 2, 3, 4, 5, 6,
                                  7);
 }
 
-/// Writes the lanes whose bits are set, lowest first, and behind them lanes that mean nothing:
-/// eight in all. Takes the same time for any set, as nothing depends on how many there are.
+/// Writes the lanes whose bits are set, in ascending order, and after them meaningless ones, eight
+/// in all. Takes the same time for any set, since nothing depends on its size.
 inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
   const IntLanes order = widen(load<EightBytes>(kPickOrders.order[which]));
 #if defined(__AVX2__)
@@ -423,14 +423,15 @@ inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
 #endif
 }
 
-/// Of blocks below each other, each a step further than the one before: the first one.
+/// The value in the first block of a column of blocks, where each block is a step further than the
+/// one above.
 inline Lanes firstBlocks(Lanes begin, Lanes /*step*/, std::int32_t /*row*/ = 0) { return begin; }
-/// The one behind it.
+/// The value in the next block.
 inline Lanes nextBlocks(Lanes blocks, Lanes step) { return blocks + step; }
 /// A number for each block.
 inline Lanes ofBlocks(float first, float /*second*/) { return spread(first); }
 
-/// Eight vectors of one number each become eight rows, `stride` apart.
+/// Writes eight vectors, each with one number of eight rows, as rows that lie `stride` apart.
 inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) {
   Lanes a[kWidth];
   for (std::uint32_t n = 0; n < kWidth; n += 2) {

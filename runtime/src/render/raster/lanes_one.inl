@@ -1,6 +1,7 @@
-// The operations of lanes_eight.inl on one lane: what a thread of the `cuda` renderer computes. The
-// same names and the same bits, so that the files that are made of them serve both. Masks are all
-// bits or none, sums and products of integers wrap around as vectors' do.
+// The operations of lanes_eight.inl on one lane, which is what a thread of the `cuda` renderer
+// computes. They have the same names and give the same bits, so that the same files serve both.
+// Masks have all bits set or none; sums and products of integers wrap around, as those of vectors
+// do.
 namespace galactic::render {
 namespace {
 
@@ -24,9 +25,9 @@ struct ShortLanes {
   std::uint32_t v;
 };
 
-/// Of the rows in pools, and of what is stored in blocks.
+/// Width of the rows in pools and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
-/// Of "vectors".
+/// Lanes of a "vector".
 constexpr std::uint32_t kLanes = 1;
 constexpr std::uint32_t kBlocks = 1;
 constexpr unsigned kAllLanes = 1;
@@ -75,11 +76,11 @@ GALACTIC_EVERYWHERE inline IntLanes operator>(Lanes a, Lanes b) { return mask(a.
 GALACTIC_EVERYWHERE inline IntLanes operator<=(Lanes a, Lanes b) { return mask(a.v <= b.v); }
 GALACTIC_EVERYWHERE inline IntLanes operator>=(Lanes a, Lanes b) { return mask(a.v >= b.v); }
 
-/// Of the only lane: all bits, or none.
+/// All bits if the set has the only lane, otherwise none.
 using LaneSet = IntLanes;
 GALACTIC_EVERYWHERE inline LaneSet whereEqual(IntLanes a, IntLanes b) { return a == b; }
 
-/// The same bits of both halves.
+/// The same bits in both halves.
 GALACTIC_EVERYWHERE constexpr std::uint32_t inBothHalves(std::uint32_t bits) {
   return bits | bits << 16U;
 }
@@ -131,7 +132,7 @@ GALACTIC_EVERYWHERE inline IntLanes pickFrom(LaneSet set, IntLanes yes, IntLanes
 }
 GALACTIC_EVERYWHERE inline IntLanes laneOf(IntLanes v, int /*lane*/) { return v; }
 
-/// The second where the comparison fails, as with numbers that are none.
+/// Returns the second number if the comparison fails, as with NaN.
 GALACTIC_EVERYWHERE inline Lanes lesser(Lanes a, Lanes b) { return a.v < b.v ? a : b; }
 GALACTIC_EVERYWHERE inline Lanes greater(Lanes a, Lanes b) { return a.v > b.v ? a : b; }
 GALACTIC_EVERYWHERE inline IntLanes lesser(IntLanes a, IntLanes b) { return a.v < b.v ? a : b; }
@@ -141,30 +142,30 @@ GALACTIC_EVERYWHERE inline Lanes clampTo(Lanes v, float low, float high) {
   return lesser(greater(v, spread(low)), spread(high));
 }
 
-/// What blend() takes for a share within [0, 1]: of 256.
+/// The weight that blend() takes for a share within [0, 1], in 256ths.
 GALACTIC_EVERYWHERE inline ShortLanes blendWeight(Lanes share) {
   return {bitsOf(toInt(share * spread(256.0F) + spread(0.5F)))};
 }
 
-/// p + (q - p) * weight / 256 for both halves, which are bytes: one product serves both, as none
-/// reaches into the other half.
+/// p + (q - p) * weight / 256 for both halves, which hold bytes. One product serves both, since
+/// neither half overflows into the other.
 GALACTIC_EVERYWHERE inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight) {
   const std::uint32_t both = p.v * (256 - weight.v) + q.v * weight.v;
   return {(both + inBothHalves(128)) >> 8U & inBothHalves(0xFF)};
 }
 
-/// a * b / 255, rounded, for both halves, which are bytes; those of `b` are alike.
+/// a * b / 255, rounded, for both halves, which hold bytes; those of `b` are the same.
 GALACTIC_EVERYWHERE inline ShortLanes byteProducts(ShortLanes a, ShortLanes b) {
   const std::uint32_t both = a.v * (b.v & 0xFFFFU) + inBothHalves(128);
   return {(both + (both >> 8U & inBothHalves(0xFF))) >> 8U & inBothHalves(0xFF)};
 }
 
-/// A whole number as both types.
+/// A whole number in both types.
 struct Whole {
   Lanes value;
   IntLanes whole;
 };
-/// The one not above a lane under 2^22.
+/// Rounds down. The lane must be below 2^22.
 GALACTIC_EVERYWHERE inline Whole roundedDown(Lanes v) {
   const IntLanes towards_0 = toInt(v);
   const IntLanes whole = towards_0 + (toFloat(towards_0) > v);
@@ -181,7 +182,7 @@ GALACTIC_EVERYWHERE inline float magnitude(float v) { return v < 0 ? -v : v; }
 /// Bit 0: the sign.
 GALACTIC_EVERYWHERE inline unsigned signBits(IntLanes v) { return bitsOf(v) >> 31U; }
 
-/// Of bits that are not all 0: the number of the lowest one.
+/// The number of the lowest bit that is set. At least one must be.
 GALACTIC_EVERYWHERE inline int lowestBit(unsigned /*bits*/) { return 0; }
 
 GALACTIC_EVERYWHERE inline IntLanes wrapMultiply(IntLanes a, IntLanes b) { return a * b; }
@@ -199,7 +200,7 @@ struct Pair {
   Vector first, second;
 };
 
-/// Entries of a table, and of a table of pairs, by their numbers.
+/// Looks up an entry of a table, or of a table of pairs, by its number.
 template <class Element>
 GALACTIC_EVERYWHERE inline auto lookUp(const Element* table, IntLanes at) {
   return gather(table, at);
@@ -220,7 +221,7 @@ GALACTIC_EVERYWHERE inline Pair<IntLanes> gatherNeighbors(const std::int32_t* fr
   return {from[at.v], from[at.v + 1]};
 }
 
-/// Element at, or the lesser of this and the one behind it where `both`, a mask, is set.
+/// Element at or, if the mask `both` is set, the lesser of elements at and at + 1.
 GALACTIC_EVERYWHERE inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
   const Lanes first(from[at.v]);
   return both.v != 0 ? lesser(first, Lanes(from[at.v + 1])) : first;
@@ -233,7 +234,7 @@ GALACTIC_EVERYWHERE inline void storePairs(Element* to, Vector first, Vector sec
   store(to + 1, second);
 }
 
-/// One number of a row: `next`, where there is more, is for wider vectors.
+/// Loads one number of a row. `next` is for wider vectors: where their second block lies.
 template <class Element>
 GALACTIC_EVERYWHERE inline IntLanes loadRows(const Element* from, std::size_t /*next*/) {
   return static_cast<std::int32_t>(*from);

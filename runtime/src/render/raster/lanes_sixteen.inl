@@ -1,5 +1,5 @@
-// Vectors of sixteen, for AVX-512: the operations of lanes_eight.inl. The same names and, lane by
-// lane, the same bits. What pools and panes keep by eight is read two by two.
+// Vectors of sixteen, for AVX-512: the operations of lanes_eight.inl, with the same names and, lane
+// by lane, the same bits. Blocks of eight in pools and panes are read two at a time.
 #include <cstddef>
 #include <cstdint>
 
@@ -13,16 +13,16 @@ using IntLanes = std::int32_t __attribute__((vector_size(64)));
 using WordLanes = std::uint32_t __attribute__((vector_size(64)));
 using ShortLanes = std::uint16_t __attribute__((vector_size(64)));
 
-/// Of the rows in pools, and of what is stored in blocks.
+/// Width of the rows in pools and of what is stored in blocks.
 constexpr std::uint32_t kWidth = 8;
-/// Of vectors, and the blocks that fill one, the second below the first.
+/// Lanes of a vector, and how many blocks fill it; the second lies below the first.
 constexpr std::uint32_t kLanes = 16;
 constexpr std::uint32_t kBlocks = 2;
 constexpr unsigned kAllLanes = 0xFFFF;
 constexpr std::size_t kVectorBytes = 64;
 constexpr std::size_t kGroupAlignment = 64;
 
-/// Numbers of twice the size: half as many fill a vector.
+/// Half as many numbers of twice the size fill a vector.
 constexpr std::uint32_t kHalf = kLanes / 2;
 using Doubles = double __attribute__((vector_size(64)));
 using HalfInts = std::int32_t __attribute__((vector_size(32)));
@@ -59,15 +59,15 @@ inline IntLanes toInt(Lanes v) { return __builtin_convertvector(v, IntLanes); }
 /// Bit n: the sign of lane n.
 inline unsigned signBits(IntLanes v) { return _mm512_movepi32_mask(as<__m512i>(v)); }
 
-/// Of bits that are not all 0: the number of the lowest one.
+/// The number of the lowest bit that is set. At least one must be.
 inline int lowestBit(unsigned bits) { return __builtin_ctz(bits); }
 
-/// Some of the lanes.
+/// A set of lanes.
 using LaneSet = __mmask16;
 inline unsigned bitsOf(LaneSet set) { return set; }
 inline LaneSet eitherOf(LaneSet a, LaneSet b) { return _kor_mask16(a, b); }
 inline LaneSet noLanes() { return 0; }
-/// Those whose bits are set.
+/// The lanes whose bits are set.
 inline LaneSet setOf(unsigned bits) { return static_cast<LaneSet>(bits); }
 inline LaneSet bySign(IntLanes v) { return _mm512_movepi32_mask(as<__m512i>(v)); }
 
@@ -78,7 +78,7 @@ inline Lanes pickFrom(LaneSet set, Lanes yes, Lanes no) {
   return as<Lanes>(_mm512_mask_blend_ps(set, as<__m512>(no), as<__m512>(yes)));
 }
 
-/// Writes lanes of the set. What is read there soon has to wait.
+/// Writes the lanes of the set. Reading from there soon afterwards has to wait.
 inline void storeFrom(LaneSet set, void* to, IntLanes v) {
   _mm512_mask_storeu_epi32(to, set, as<__m512i>(v));
 }
@@ -105,12 +105,12 @@ inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) {
   return pickFrom(static_cast<LaneSet>(signBits(mask)), yes, no);
 }
 
-/// One lane, in all.
+/// One lane, copied to all lanes.
 inline IntLanes laneOf(IntLanes v, int lane) {
   return as<IntLanes>(_mm512_permutexvar_epi32(_mm512_set1_epi32(lane), as<__m512i>(v)));
 }
 
-/// The second where the comparison fails, as with numbers that are none.
+/// Returns the second number if the comparison fails, as with NaN.
 inline Lanes lesser(Lanes a, Lanes b) {
   return as<Lanes>(_mm512_min_ps(as<__m512>(a), as<__m512>(b)));
 }
@@ -139,7 +139,7 @@ inline std::int32_t least(IntLanes v) { return _mm512_reduce_min_epi32(as<__m512
 inline std::int32_t most(IntLanes v) { return _mm512_reduce_max_epi32(as<__m512i>(v)); }
 inline float least(Lanes v) { return _mm512_reduce_min_ps(as<__m512>(v)); }
 
-/// Products and differences that may wrap around: of lanes whose result is not used.
+/// Products and differences that may wrap around, in lanes whose result is not used.
 inline IntLanes wrapMultiply(IntLanes a, IntLanes b) {
   return as<IntLanes>(as<WordLanes>(a) * as<WordLanes>(b));
 }
@@ -147,7 +147,7 @@ inline IntLanes wrapSubtract(IntLanes a, IntLanes b) {
   return as<IntLanes>(as<WordLanes>(a) - as<WordLanes>(b));
 }
 
-/// The block at `from`, and the one `next` elements further.
+/// Loads the block at `from` and the one `next` elements further.
 inline IntLanes loadRows(const std::uint16_t* from, std::size_t next) {
   const auto low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
   const auto high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from + next));
@@ -163,7 +163,7 @@ inline Lanes loadRows(const float* from, std::size_t next) {
   return as<Lanes>(_mm512_insertf32x8(low, _mm256_loadu_ps(from + next), 1));
 }
 
-/// Four numbers of each of four rows, which lie `stride` numbers apart.
+/// Loads four numbers of each of four rows that lie `stride` numbers apart.
 inline Lanes loadSquare(const float* from, std::size_t stride) {
   const __m256 upper = _mm256_set_m128(_mm_loadu_ps(from + stride), _mm_loadu_ps(from));
   from += 2 * stride;
@@ -189,8 +189,9 @@ inline IntLanes gather(const std::int32_t* from, IntLanes at) {
   return as<IntLanes>(gather(reinterpret_cast<const float*>(from), at));
 }
 
-/// Entries of a table of 128, by their numbers. `stride`: from sixteen entries to the next ones.
-/// A table lies in registers while many are looked up, and no element is loaded by itself.
+/// Looks up entries of a table of 128 by their numbers. `stride`: from sixteen entries to the next
+/// sixteen. During many look-ups the table stays in registers, so that no element is loaded
+/// separately.
 inline Lanes lookUp(const float* table, IntLanes at, std::size_t stride = kLanes) {
   const auto index = as<__m512i>(at);
   const auto of_32 = [&](std::size_t n) {
@@ -207,7 +208,7 @@ inline IntLanes lookUp(const std::int32_t* table, IntLanes at, std::size_t strid
   return as<IntLanes>(lookUp(reinterpret_cast<const float*>(table), at, stride));
 }
 
-/// Entries of a table of at most kFewEntries, which begins on a whole vector, by their numbers.
+/// Looks up entries of a table of at most kFewEntries, aligned to a whole vector, by their numbers.
 constexpr std::uint32_t kFewEntries = 32;
 inline Lanes lookUpFew(const float* table, IntLanes at) {
   return as<Lanes>(_mm512_permutex2var_ps(_mm512_load_ps(table), as<__m512i>(at),
@@ -219,7 +220,7 @@ struct Pair {
   Vector first, second;
 };
 
-/// Elements at and at + 1. Numbers that lie in memory are read one by one, too.
+/// Elements at and at + 1. The gather instruction would read them one by one, too.
 [[gnu::always_inline]] inline Pair<IntLanes> gatherNeighbors(const std::int32_t* from,
                                                              const IntLanes& at) {
   const auto two = [&](int lane) {
@@ -240,8 +241,8 @@ struct Pair {
           as<IntLanes>(_mm512_shuffle_ps(even, odd, 0xDD))};
 }
 
-/// Elements at, or the lesser of these and the ones behind them where `both`, a mask, is set. All
-/// of them are read.
+/// Elements at or, in lanes where the mask `both` is set, the lesser of elements at and at + 1.
+/// Both are always read.
 inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
   const auto* words = reinterpret_cast<const std::int32_t*>(from);
   const detail::TwoOfEight low = detail::gatherTwoOfEight<1>(words, lowHalf(at));
@@ -250,7 +251,8 @@ inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
   return lesser(first, pick(both, joined<Lanes>(low.second, high.second), first));
 }
 
-/// A table of pairs: sixteen first numbers, then their second ones.
+/// Looks up entries of a table of pairs, which has sixteen first numbers followed by their second
+/// numbers.
 template <class Element>
 inline auto lookUpPairs(const Element* table, IntLanes at) {
   constexpr std::size_t kStride = std::size_t{2} * kLanes;
@@ -268,7 +270,8 @@ inline void storePairs(Element* to, Vector first, Vector second) {
   store(to + kLanes, second);
 }
 
-/// Four vectors become four others: of each quarter, number n of all of them, in their order.
+/// Transposes quarters: in each quarter, vector n gets number n of all four vectors, in their
+/// order.
 inline void transposeQuarters(const __m512* from, __m512* to) {
   const __m512 a = _mm512_unpacklo_ps(from[0], from[1]);
   const __m512 b = _mm512_unpackhi_ps(from[0], from[1]);
@@ -280,8 +283,9 @@ inline void transposeQuarters(const __m512* from, __m512* to) {
   to[3] = _mm512_shuffle_ps(b, d, 0xEE);
 }
 
-/// Eight numbers of rows become a vector each: the lanes are those of the row that begins at number
-/// at[lane]. How many different ones there are is hard to foresee: only one is a case of its own.
+/// Reads eight numbers of the row that begins at number at[lane], for each lane, into a vector
+/// each. Only the case that all lanes have the same row is treated separately, because the number
+/// of different rows is hard to predict.
 [[gnu::always_inline]] inline void gatherRows(const float* rows, const std::int32_t* at,
                                               Lanes* fields) {
   const auto row = [&](std::uint32_t lane) { return rows + static_cast<std::uint32_t>(at[lane]); };
@@ -304,20 +308,21 @@ inline void transposeQuarters(const __m512* from, __m512* to) {
   }
 }
 
-/// Writes the lanes whose bits are set, lowest first, and behind them lanes that mean nothing:
+/// Writes the lanes whose bits are set, in ascending order, and after them meaningless ones,
 /// sixteen in all.
 inline void storePicked(std::int32_t* to, IntLanes v, unsigned which) {
   store(to, as<IntLanes>(_mm512_maskz_compress_epi32(static_cast<LaneSet>(which), as<__m512i>(v))));
 }
 
-/// Of blocks below each other, each a step further than the one before: the first ones. `begin` has
-/// the first block in both halves; where its row is odd, it is the lower one of its pair.
+/// The values in the first pair of a column of blocks, where each block is a step further than the
+/// one above. `begin` has the first block in both halves; if its row is odd, it is the lower one of
+/// its pair.
 inline Lanes firstBlocks(Lanes begin, Lanes step, std::int32_t row = 0) {
   const LaneSet lower = row % 2 != 0 ? 0 : 0xFF00;
   return as<Lanes>(
       _mm512_mask_add_ps(as<__m512>(begin), lower, as<__m512>(begin), as<__m512>(step)));
 }
-/// The ones behind them.
+/// The values in the next pair of blocks.
 inline Lanes nextBlocks(Lanes blocks, Lanes step) {
   const __m512 last = _mm512_shuffle_f32x4(as<__m512>(blocks), as<__m512>(blocks), 0xEE);
   return firstBlocks(as<Lanes>(_mm512_add_ps(last, as<__m512>(step))), step);
@@ -328,7 +333,8 @@ inline Lanes ofBlocks(float first, float second) {
   return pickFrom(setOf(0xFF00), spread(second), spread(first));
 }
 
-/// Eight vectors of one number each become sixteen rows of eight, `stride` apart.
+/// Writes eight vectors, each with one number of sixteen rows, as rows of eight that lie `stride`
+/// apart.
 inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) {
   __m512 from[8];
   for (int n = 0; n < 8; ++n) from[n] = as<__m512>(fields[n]);
@@ -348,7 +354,7 @@ inline void storeTransposed(const Lanes* fields, float* to, std::size_t stride) 
   }
 }
 
-/// Four rows of pixels to an image, whose rows lie `stride` bytes apart.
+/// Writes four rows of pixels to an image whose rows lie `stride` bytes apart.
 inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
   store(to, _mm512_castsi512_si128(as<__m512i>(v)));
   store(to + stride, _mm512_extracti32x4_epi32(as<__m512i>(v), 1));
@@ -356,31 +362,31 @@ inline void storeBlocks(std::uint8_t* to, std::size_t stride, IntLanes v) {
   store(to + 3 * stride, _mm512_extracti32x4_epi32(as<__m512i>(v), 3));
 }
 
-/// What blend() takes for shares within [0, 1], alike in both halves of a lane.
+/// The weight that blend() takes for a share within [0, 1], in both halves of a lane.
 inline ShortLanes blendWeight(Lanes share) {
-  // -128 times the weight, of 256.
+  // -128 times the weight, which is in 256ths.
   const IntLanes negative = toInt(share * spread(-256.0F) - spread(0.5F));
   return as<ShortLanes>((negative << 7 & 0xFFFF) | negative << 23);
 }
 
-/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which are bytes.
+/// p + (q - p) * weight / 256 for the 16-bit halves of all lanes, which hold bytes.
 inline ShortLanes blend(ShortLanes p, ShortLanes q, ShortLanes weight) {
-  // The instruction divides by 2^15, and rounds.
+  // The instruction divides by 2^15 and rounds.
   return p + as<ShortLanes>(_mm512_mulhrs_epi16(as<__m512i>(p - q), as<__m512i>(weight)));
 }
 
-/// a * b / 255, rounded, for 16-bit halves that are bytes.
+/// a * b / 255, rounded, for 16-bit halves that hold bytes.
 inline ShortLanes byteProducts(ShortLanes a, ShortLanes b) {
   // (p + p / 256) / 256, both rounded down.
   return as<ShortLanes>(_mm512_mulhi_epu16(as<__m512i>(a * b + 128), _mm512_set1_epi16(257)));
 }
 
-/// Whole numbers as both types.
+/// Whole numbers in both types.
 struct Whole {
   Lanes value;
   IntLanes whole;
 };
-/// Those not above lanes under 2^22.
+/// Rounds down. Lanes must be below 2^22.
 inline Whole roundedDown(Lanes v) {
   const auto floats = as<Lanes>(_mm512_floor_ps(as<__m512>(v)));
   return {floats, toInt(floats)};
