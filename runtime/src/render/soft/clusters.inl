@@ -1,4 +1,4 @@
-// The clusters of a pane that may be seen, front to back.
+// Lists the clusters of a pane that may be visible, front to back.
 namespace galactic::render {
 namespace {
 
@@ -42,7 +42,7 @@ std::uint32_t findClusters(const PaneTask& task, const PaneScratch& scratch, Pan
   return static_cast<std::uint32_t>(end - scratch.seen);
 }
 
-/// Fills scratch.order: by bucket; within one as found, that is by model, then cluster.
+/// Fills scratch.order: by bucket, and within a bucket as found, which is by model, then cluster.
 void sortClusters(const PaneScratch& scratch, std::uint32_t count) {
   std::uint32_t* starts = scratch.bucket_starts;
   __builtin_memset(starts, 0, (kBuckets + 1) * sizeof(*starts));

@@ -1,23 +1,24 @@
-// Which pixels triangles cover, and where they are in front of what was drawn before.
+// Finds the pixels that triangles cover, and where the triangles are in front of what was drawn
+// before.
 //
 // Vertices lie on a lattice of 1/256 pixel, so edge functions are integers and exact: two triangles
-// that share an edge get opposite numbers for it, and the rule of the upper left edge gives a pixel
-// on the edge to one of them.
+// that share an edge get opposite numbers for it, and the top-left rule gives a pixel on the edge
+// to exactly one of them.
 namespace galactic::render {
 namespace {
 
-/// A test of a vector of pixels besides coverage and depth: passes all.
+/// A test of a vector of pixels besides coverage and depth; this one passes all pixels.
 struct Opaque {
   static constexpr bool kTests = false;
 };
 
-/// Which pixels of a vector were drawn, and 1/w of all of them now.
+/// Which pixels of a vector were drawn, and 1/w of all its pixels afterwards.
 struct Covered {
   LaneSet shown;
   Lanes depth;
 };
 
-/// Draws a vector of pixels, but for those whose sign in `outside` is set.
+/// Draws the pixels of a vector whose sign in `outside` is not set.
 template <class Test>
 inline Covered coverBlocks(const BlockPlace& place, IntLanes outside, Lanes z, IntLanes id,
                            const Test& test) {
@@ -33,12 +34,12 @@ inline Covered coverBlocks(const BlockPlace& place, IntLanes outside, Lanes z, I
   return {shown, depth};
 }
 
-/// How an edge function changes from pixel to pixel within a vector.
+/// The changes of an edge function from the first pixel of a vector to its pixels.
 inline IntLanes edgeOffsets(std::int32_t right, std::int32_t down) {
   return pixelsRight() * spread(right) + pixelsDown() * spread(down);
 }
 
-/// How what a group's set-up gives changes from vector to vector and from row to row.
+/// How the values of a GroupSetup change from one vector to those beside and below it.
 struct alignas(kGroupAlignment) GroupSteps {
   std::int32_t edge_beside[3][kLanes], edge_below[3][kLanes];
   float z_beside[kLanes], z_below[kLanes];
@@ -55,7 +56,7 @@ inline void setSteps(const GroupSetup& group, GroupSteps& steps) {
   store(steps.z_below, load<Lanes>(group.z_down) * spread(2.0F));
 }
 
-/// Triangle `n` of a group on its way over the pane, from row to row.
+/// Triangle `n` of a group while it is drawn on the pane, row by row.
 template <class Test>
 struct SmallCover {
   const Pane& pane;
@@ -65,7 +66,8 @@ struct SmallCover {
   const Test& test;
 
   EdgeLanes edges{lanes(0), lanes(1), lanes(2)};
-  // From block to block, as all processors do: no lane may take a short cut.
+  // 1/w is summed up from block to block, whatever the width of vectors, so that all processors
+  // round alike.
   Lanes z = firstBlocks(spread(group.z[n]) + toFloat(pixelsRight()) * spread(group.z_right[n]) +
                             toFloat(pixelsDown() & 1) * spread(group.z_down[n]),
                         spread(steps.z_below[n]), group.first_row[n]);
@@ -91,7 +93,7 @@ struct SmallCover {
                            edges.c + spread(steps.edge_beside[2][n])};
     cover({place.depth + kLanes, place.ids + kLanes}, beside, z + spread(steps.z_beside[n]));
   }
-  /// `more`: vectors beside the first one.
+  /// `more`: how many vectors follow the first one in the row.
   void coverRow(BlockPlace place, Lanes z_there, std::uint32_t more) {
     EdgeLanes at = edges;
     for (;; --more) {
@@ -105,7 +107,7 @@ struct SmallCover {
   }
 };
 
-/// Draws triangle `n` of a group; says whether it shows.
+/// Draws triangle `n` of a group; returns whether any of it is visible.
 template <class Test>
 inline bool coverSmall(const Pane& pane, const GroupSetup& group, const GroupSteps& steps,
                        unsigned n, const Test& test) {
@@ -124,13 +126,13 @@ inline bool coverSmall(const Pane& pane, const GroupSetup& group, const GroupSte
       place = {place.depth + stride, place.ids + stride};
     }
   };
-  // Most triangles are narrow: then their rows have no loops of their own.
+  // Most triangles are narrow, and their rows need no inner loop.
   if (more == 0) return rows([&] { small.cover(place, small.edges, small.z); });
   if (more == 1) return rows([&] { small.coverTwo(place); });
   return rows([&] { small.coverRow(place, small.z, more); });
 }
 
-/// Marks the tiles of those triangles of a group whose bits are set, as one box.
+/// Marks the tiles of the triangles whose bits are set as changed, in one box around all of them.
 inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned seen) {
   const LaneSet shown = setOf(seen);
   const auto first = [&](const std::int32_t* of_group) {
@@ -147,21 +149,22 @@ inline void markChanged(const Pane& pane, const GroupSetup& group, unsigned seen
   }
 }
 
-/// Notes the least 1/w of a tile.
+/// Stores the least 1/w of a tile, which is then up to date.
 inline void noteDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t tile_y, float depth) {
   const PaneScratch& scratch = *pane.scratch;
   scratch.tile_depth[std::size_t{tile_y} * pane.tile_columns + tile_x] = depth;
   scratch.tile_changed[tile_y] &= ~(1U << tile_x);
 }
 
-/// Least 1/w of a tile.
+/// The least 1/w of a tile; measures the tile if it has changed.
 inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t tile_y) {
   const PaneScratch& scratch = *pane.scratch;
   const std::size_t tile = static_cast<std::size_t>(tile_y) * pane.tile_columns + tile_x;
   if ((scratch.tile_changed[tile_y] >> tile_x & 1U) == 0) return scratch.tile_depth[tile];
   constexpr std::uint32_t kRows = kTileEdge / kHigh;
   const std::size_t stride = rowStride(pane);
-  const float* from = scratch.depth + std::size_t{tile_y} * kRows * stride + std::size_t{2} * tile_x * kLanes;
+  const float* from =
+      scratch.depth + std::size_t{tile_y} * kRows * stride + std::size_t{2} * tile_x * kLanes;
   Lanes farthest = load<Lanes>(from);
   for (std::uint32_t row = 0; row < kRows; ++row, from += stride) {
     for (std::uint32_t n = 0; n < 2 * kLanes; n += kLanes) {
@@ -172,13 +175,13 @@ inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t til
   return scratch.tile_depth[tile];
 }
 
-/// Of the tiles of a row from `x` on that are set in `bits`: those that do not hide all that is at
-/// most as near as `nearest` tells for each.
+/// Of the tiles of a row from `x` on whose bits are set: those that do not hide everything that is
+/// at most as near as their lane of `nearest`.
 inline unsigned mayShow(const Pane& pane, std::int32_t x, std::int32_t y, unsigned bits,
                         Lanes nearest) {
   const PaneScratch& scratch = *pane.scratch;
   const float* depth = scratch.tile_depth + static_cast<std::size_t>(y) * pane.tile_columns + x;
-  // What is known of a tile is never too near, even where the tile has changed since.
+  // A stored depth is a lower bound even if the tile has changed since, because 1/w only grows.
   bits &= bitsOf(whereLess(load<Lanes>(depth), nearest));
   const unsigned changed = bits & scratch.tile_changed[y] >> static_cast<unsigned>(x);
   if (changed == 0) return bits;
@@ -188,11 +191,11 @@ inline unsigned mayShow(const Pane& pane, std::int32_t x, std::int32_t y, unsign
   return bits & bitsOf(whereLess(load<Lanes>(depth), nearest));
 }
 
-/// Tiles that are looked at together: as many as a vector has lanes, row by row of four.
+/// Size of a "square" of tiles that are tested together: one tile per lane, in rows of four.
 constexpr std::int32_t kSquareWidth = 4;
 constexpr auto kSquareHeight = static_cast<std::int32_t>(kLanes) / kSquareWidth;
 
-/// mayShow() of such tiles, from one on.
+/// Like mayShow(), for a square of tiles that begins at `x`, `y`.
 inline unsigned mayShowInSquare(const Pane& pane, std::int32_t x, std::int32_t y, unsigned bits,
                                 Lanes nearest) {
   const PaneScratch& scratch = *pane.scratch;
@@ -213,7 +216,7 @@ inline unsigned mayShowInSquare(const Pane& pane, std::int32_t x, std::int32_t y
   return bits & bitsOf(whereLess(loadSquare(depth, pane.tile_columns), nearest));
 }
 
-/// Whether one of the cluster's tiles hides what is as far as `farthest`.
+/// Whether at least one of the cluster's tiles hides something that is as far as `farthest`.
 inline bool hidesSome(const Pane& pane, const SeenCluster& seen, float farthest) {
   unsigned open = kAllLanes;
   for (std::uint32_t y = seen.tiles[2]; y <= seen.tiles[3]; ++y) {
@@ -226,8 +229,8 @@ inline bool hidesSome(const Pane& pane, const SeenCluster& seen, float farthest)
   return open != kAllLanes;
 }
 
-/// Whether what was drawn hides all that lies in the cluster's tiles. Measures all of them where
-/// they are few: triangles are compared with them, too.
+/// Whether what was drawn hides everything in the cluster's tiles. If the tiles are few, this
+/// measures all of them, since triangles are compared with them too.
 inline bool isHidden(const Pane& pane, const SeenCluster& seen) {
   constexpr std::uint32_t kFew = 32;
   const std::uint32_t wide = seen.tiles[1] - seen.tiles[0] + 1U;

@@ -1,13 +1,13 @@
-// Triangles that are drawn one by one: large ones, and what clipping leaves of others.
+// Draws triangles one by one: large ones, and the remains of clipped ones.
 namespace galactic::render {
 namespace {
 
-/// What is the same in all tiles of a large triangle.
+/// Changes that are the same in all tiles of a large triangle.
 struct TileSteps {
-  /// Of edge functions from one vector to the next ones beside and below.
+  /// Changes of edge functions from one vector to the ones beside and below it.
   IntLanes edge_beside[3], edge_below[3];
   Lanes z_beside;
-  /// Of 1/w, of each row of blocks from the first one, for each row of vectors.
+  /// For each row of vectors: the changes of 1/w from the first row of blocks to the vectors' own.
   Lanes z_down[kTileEdge / kHigh];
 };
 
@@ -27,8 +27,8 @@ inline TileSteps tileSteps(const LargeSetup& setup) {
   return steps;
 }
 
-/// Edge functions and 1/w at the first pixels of some tiles, and where these lie: in the pane's
-/// pixels, and among its tiles.
+/// Edge functions and 1/w at the first pixels of some tiles, and where the tiles lie: among the
+/// pane's pixels and among its tiles.
 struct TileStarts {
   alignas(kVectorBytes) std::int32_t pixels[kHalf];
   alignas(kVectorBytes) std::int32_t tiles[kHalf];
@@ -39,14 +39,14 @@ struct TileStarts {
 constexpr int kLogMostTiles = 5;
 static_assert(1U << kLogMostTiles == kMostTiles);
 
-/// Of tiles by their numbers: see TileList.
+/// `tiles`: numbers of tiles as in TileList.
 inline void startTiles(const Pane& pane, const LargeSetup& setup, HalfInts tiles,
                        TileStarts& starts) {
-  // Further out the sign is the same in the whole tile: changes per pixel are under 2^24.
+  // Beyond this, the sign is the same in the whole tile, since changes per pixel are below 2^24.
   constexpr double kMost = 1 << 30;
   constexpr double kEdge = kTileEdge;
   const HalfInts x = tiles & (kMostTiles - 1);
-  // What lies behind the last tile of a list is any number.
+  // Masked, because the numbers after the last tile of a list are arbitrary.
   const HalfInts y = tiles >> kLogMostTiles & (kMostTiles - 1);
   const auto row = static_cast<std::int32_t>(rowStride(pane) * (kTileEdge / kHigh));
   store(starts.pixels, y * row + x * static_cast<std::int32_t>(kLanes * (kTileEdge / kBlockWidth)));
@@ -54,7 +54,7 @@ inline void startTiles(const Pane& pane, const LargeSetup& setup, HalfInts tiles
   const Doubles right = __builtin_convertvector(x, Doubles) * kEdge;
   const Doubles down = __builtin_convertvector(y, Doubles) * kEdge;
   for (int n = 0; n < 3; ++n) {
-    // Exact: all of them are whole numbers under 2^53.
+    // Exact, since all of these are whole numbers below 2^53.
     const LongEdge& edge = setup.edges[n];
     const Doubles value =
         static_cast<double>(edge.start) +
@@ -66,7 +66,8 @@ inline void startTiles(const Pane& pane, const LargeSetup& setup, HalfInts tiles
                                           HalfFloats));
 }
 
-/// Where the tiles of a pane lie: by value, so that no store can change it.
+/// Where the tiles of a pane lie. This is passed by value, so that the compiler knows that no store
+/// changes it.
 struct TilePlaces {
   BlockPlace first;
   float* depth;
@@ -77,8 +78,8 @@ inline TilePlaces tilePlaces(const Pane& pane) {
   return {placeOf(pane, 0, 0), pane.scratch->tile_depth, rowStride(pane)};
 }
 
-/// Draws the pixels of tile `n` of those that start so and measures it: it has been measured
-/// before, in findTiles(). Says whether any shows.
+/// Draws the pixels of tile `n` of `starts` and measures its depth, which findTiles() had brought
+/// up to date. Returns which lanes have drawn something.
 template <class Test>
 inline LaneSet coverTile(const TilePlaces places, const LargeSetup& setup, const TileSteps& steps,
                          const TileStarts& starts, std::uint32_t n, IntLanes id, const Test& test) {
@@ -113,21 +114,21 @@ inline LaneSet coverTile(const TilePlaces places, const LargeSetup& setup, const
   return hit;
 }
 
-/// A linear function over a square of tiles (see mayShowInSquare()), widened by what rounding can
-/// do: no lane is less than the exact value.
+/// A linear function over a square of tiles (see mayShowInSquare()), enlarged by a bound of the
+/// rounding errors, so that no lane is less than the exact value.
 struct TileFunction {
   Lanes value, beside, below;
 };
 
-/// The edge functions of a large triangle at the pixel of a tile where they are largest, and 1/w at
-/// its nearest one.
+/// The edge functions of a large triangle, each at the pixel of a tile where it is largest, and 1/w
+/// at the tile's nearest pixel.
 struct TileFunctions {
   TileFunction a, b, c, nearest;
 
   IntLanes outside() const {
     return as<IntLanes>(a.value) | as<IntLanes>(b.value) | as<IntLanes>(c.value);
   }
-  /// One step further.
+  /// Moves to the next square.
   void move(Lanes TileFunction::*step) {
     a.value = a.value + a.*step;
     b.value = b.value + b.*step;
@@ -136,7 +137,7 @@ struct TileFunctions {
   }
 };
 
-/// Those of the square whose first tile is `x`, `y`.
+/// The functions of the square whose first tile is `x`, `y`.
 inline TileFunctions tileFunctions(const LargeSetup& setup, std::int32_t x, std::int32_t y) {
   // Three edges and 1/w at the pane's first pixel, and their changes per pixel.
   using Four = double __attribute__((vector_size(32)));
@@ -151,13 +152,14 @@ inline TileFunctions tileFunctions(const LargeSetup& setup, std::int32_t x, std:
   const Four start{static_cast<double>(edges[0].start), static_cast<double>(edges[1].start),
                    static_cast<double>(edges[2].start), depth.start};
   const auto magnitudes = [](Four v) { return as<Four>(as<FourInts>(v) & INT64_MAX); };
-  // Of at most kMostTiles sums, and of those in coverTile(), relative to what is added.
+  // A bound of the rounding errors of kMostTiles additions, and of those in coverTile(), relative
+  // to the size of what is added.
   constexpr double kSumsRounding = 6e-6;
   constexpr double kEdge = kTileEdge;
   constexpr double kLast = kTileEdge - 1;
   const Four right_size = magnitudes(right);
   const Four down_size = magnitudes(down);
-  // To the pixel of the first tile where each of them is largest.
+  // The change from the first pixel of a tile to the pixel where each of the four is largest.
   const Four reach = ((right_size + right) + (down_size + down)) * (kLast / 2);
   const Four first = (start + reach) + (right * (kEdge * x) + down * (kEdge * y));
   const Four size = magnitudes(first) + (right_size + down_size) * double{kPaneEdge};
@@ -165,7 +167,7 @@ inline TileFunctions tileFunctions(const LargeSetup& setup, std::int32_t x, std:
   const auto rights = __builtin_convertvector(right * kEdge, FourFloats);
   const auto downs = __builtin_convertvector(down * kEdge, FourFloats);
   const auto function = [&](int n) -> TileFunction {
-    // Four tiles are a row, as four pixels are a row of a vector.
+    // The lanes form rows of four tiles, in the same way as rows of four pixels.
     return {spread(starts[n]) + toFloat(pixelsRight()) * spread(rights[n]) +
                 toFloat(pixelsDown()) * spread(downs[n]),
             spread(rights[n]) * static_cast<float>(kSquareWidth),
@@ -174,21 +176,21 @@ inline TileFunctions tileFunctions(const LargeSetup& setup, std::int32_t x, std:
   return {function(0), function(1), function(2), function(3)};
 }
 
-/// Tiles of a pane, column and row of each: y * kMostTiles + x.
+/// A list of tiles of a pane, each as y * kMostTiles + x.
 struct TileList {
   std::int32_t tiles[kMostTiles * kMostTiles + kLanes];
   std::uint32_t count = 0;
 };
 
-/// Those of the first `wide` columns and `high` rows of a square of tiles: bit n for lane n.
+/// The tiles in the first `wide` columns and `high` rows of a square: bit n for lane n.
 inline unsigned firstOfSquare(std::int32_t wide, std::int32_t high) {
   const unsigned row = (1U << static_cast<unsigned>(lesserOf(wide, kSquareWidth))) - 1;
   const auto rows = static_cast<unsigned>(kSquareWidth * lesserOf(high, kSquareHeight));
   return row * 0x1111U & ((1U << rows) - 1);
 }
 
-/// The tiles that a large triangle touches and where it may show. Which of them do is hard to
-/// foresee: no branch depends on it.
+/// Lists the tiles that a large triangle touches and in which it may be visible. No branch depends
+/// on which ones do, because that is hard to predict.
 inline void findTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box,
                       TileList& list) {
   const IntLanes numbers =
@@ -230,15 +232,14 @@ bool coverTiles(const Pane& pane, const LargeSetup& setup, const TileBox& box, c
   return bitsOf(hit) != 0;
 }
 
-/// Sets what depends on the pixels of a vector.
+/// Sets the offsets, which depend on the pixels of a vector.
 inline void setOffsets(LargeSetup& setup) {
   for (LongEdge& edge : setup.edges) edge.offsets = edgeOffsets(edge.right, edge.down);
   setup.z_offsets = toFloat(pixelsRight()) * spread(static_cast<float>(setup.depth.right)) +
                     toFloat(pixelsDown() & 1) * spread(static_cast<float>(setup.depth.down));
 }
 
-/// Draws a triangle that may touch some tiles. `make_record`: writes its record and that of its
-/// colors.
+/// Draws a triangle that may touch `tiles`. `make_record` writes its record and that of its colors.
 template <class MakeRecord>
 inline void drawInTiles(Pane& pane, const ClusterState& state, LargeSetup& setup,
                         const TileBox& tiles, const MakeRecord& make_record) {
@@ -258,8 +259,7 @@ inline void drawInTiles(Pane& pane, const ClusterState& state, LargeSetup& setup
   if (seen && pane.shades) ++pane.records;
 }
 
-/// Draws one triangle, whatever its size. Corners go clockwise on the screen where it shows its
-/// face.
+/// Draws one triangle of any size. Its corners go clockwise on the screen if it shows its face.
 void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Corner& b,
                const Corner& c) {
   LargeTriangle triangle;
@@ -272,7 +272,8 @@ void drawLarge(Pane& pane, const ClusterState& state, const Corner& a, const Cor
   });
 }
 
-/// Draws up to a vector of large triangles; `corners` has that many.
+/// Draws `count` large triangles, but at most a vector of them. `corners` must have room for a
+/// whole vector.
 void drawLargeGroup(Pane& pane, const ClusterState& state, const std::int32_t* corners,
                     std::uint32_t count) {
   LargeGroup group;
@@ -291,7 +292,7 @@ void drawLargeGroup(Pane& pane, const ClusterState& state, const std::int32_t* c
   }
 }
 
-/// Draws what is left of a triangle, given by the numbers of its vertices.
+/// Clips a triangle, given by the numbers of its vertices, and draws what is left of it.
 void drawClipped(Pane& pane, ClusterState& state, std::int32_t packed_corners) {
   if (state.facts.isTextured()) readCoordinates(state);
   const auto corners = static_cast<std::uint32_t>(packed_corners);

@@ -1,12 +1,12 @@
-// Set-up of a vector of large triangles: the numbers that faces(), tilesOf() and setUpLarge() give
-// for one, bit for bit.
+// Set-up of a vector of large triangles. The numbers are those of faces(), tilesOf() and
+// setUpLarge() for each triangle, bit for bit.
 namespace galactic::render {
 namespace {
 
 struct LargeGroup {
-  /// As the triangles show their faces.
+  /// Corners in the order in which the triangles show their faces.
   alignas(kVectorBytes) std::int32_t corners[kLanes];
-  /// First and last tiles.
+  /// First and last columns and rows of tiles.
   alignas(kVectorBytes) std::int32_t left[kLanes], right[kLanes], top[kLanes], bottom[kLanes];
   alignas(kVectorBytes) float z_low[kLanes], z_high[kLanes];
   /// Changes of edge functions per pixel.
@@ -15,7 +15,7 @@ struct LargeGroup {
   alignas(kVectorBytes) double area[kLanes], start[kLanes], z_right[kLanes], z_down[kLanes];
 };
 
-/// Lanes from `first` on, as many as there are doubles in a vector.
+/// As many lanes, from `first` on, as a vector has doubles.
 template <class Half, class Whole>
 inline Half halfOf(const Whole& v, std::uint32_t first) {
   Half half;
@@ -29,7 +29,7 @@ inline Doubles doublesOf(Lanes v, std::uint32_t first) {
   return __builtin_convertvector(halfOf<HalfFloats>(v, first), Doubles);
 }
 
-/// The whole number that is not above, for magnitudes under 2^51.
+/// Rounds down, for magnitudes below 2^51.
 inline Doubles floorOf(Doubles v) {
   constexpr double kToWholeDouble = 6755399441055744.0;
   const Doubles nearest = (v + kToWholeDouble) - kToWholeDouble;
@@ -51,7 +51,7 @@ inline void setUpLongEdge(const PointLanes& from, const PointLanes& to, std::uin
   for (std::uint32_t first = 0; first < kLanes; first += kHalf) {
     const Doubles across = doublesOf(spread(kSubpixels / 2) - from.y, first);
     const Doubles along = doublesOf(spread(kSubpixels / 2) - from.x, first);
-    // Exact: coordinates are under 2^24.
+    // Exact, since coordinates are below 2^24.
     const Doubles value =
         doublesOf(dx, first) * across - doublesOf(dy, first) * along + doublesOf(~keeps, first);
     store(group.edge_start[e] + first, floorOf(value * (1.0 / kSubpixels)));
@@ -79,7 +79,7 @@ inline void setUpDepth(const LargeCorners& k, LargeGroup& group) {
   }
 }
 
-/// Twice the areas, of any sign: bit n where that of triangle n is negative, and where it is 0.
+/// Signs of the areas. Bit n of `negative`: that of triangle n is below 0; of `none`: it is 0.
 struct AreaSigns {
   unsigned negative, none;
 };
@@ -100,7 +100,7 @@ inline AreaSigns setUpAreas(const LargeCorners& k, LargeGroup& group) {
   return signs;
 }
 
-/// Which of the triangles may be seen: bit n for triangle n.
+/// Sets up the triangles. Returns which of them may be visible: bit n for triangle n.
 inline unsigned setUpLargeGroup(const PaneTask& task, const ClusterState& state,
                                 IntLanes packed_corners, LargeGroup& group) {
   const CornerLanes numbers = unpacked(packed_corners);
@@ -135,7 +135,7 @@ inline unsigned setUpLargeGroup(const PaneTask& task, const ClusterState& state,
   return ~(signBits((right - left) | (bottom - top)) | signs.none | turned_away) & kAllLanes;
 }
 
-/// All but the offsets.
+/// Sets all members but the offsets.
 inline LargeSetup setupOf(const LargeGroup& group, std::uint32_t n) {
   LargeSetup setup;
   for (std::uint32_t e = 0; e < 3; ++e) {

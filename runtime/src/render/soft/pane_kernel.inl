@@ -1,6 +1,6 @@
-// Draws a pane: included by pane_portable.cpp, pane_avx2.cpp and pane_avx512.cpp, each behind the
-// vectors of the instructions that it may use. No library templates here or in the files that this
-// one is made of: see column_grid_avx2.cpp. Each builds on those before it.
+// Draws a pane. pane_portable.cpp, pane_avx2.cpp and pane_avx512.cpp include this file, each after
+// the vectors of the instructions that it may use. Use no library templates here or in the files
+// that this one includes; see column_grid_avx2.cpp. Each of these files builds on those before it.
 // clang-format off
 #include "render/raster/cull.inl"
 #include "render/raster/vertices.inl"
@@ -22,7 +22,7 @@
 namespace galactic::render {
 namespace {
 
-/// Empties the pane. What lies beyond the image counts as covered by something very near.
+/// Empties the pane. Pixels beyond the image count as covered by something very near.
 void clearPane(const Pane& pane) {
   const PaneTask& task = *pane.task;
   const PaneScratch& scratch = *pane.scratch;
@@ -54,7 +54,8 @@ void recordBackground(const Pane& pane) {
   record[kKind] = as<float>(kFlatSurface);
 }
 
-/// Draws up to a vector of small triangles; `corners` has that many.
+/// Draws `count` small triangles, at most a vector of them. `corners` must have room for a whole
+/// vector.
 void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std::uint32_t count) {
   if (pane.records + kLanes > kMostRecords) makeRoom(pane);
   SmallGroup group;
@@ -65,7 +66,7 @@ void drawGroup(Pane& pane, ClusterState& state, const std::int32_t* corners, std
   const std::uint32_t first = pane.records;
   unsigned seen = 0;
   const auto cover = [&](std::uint32_t n, const auto& test) {
-    // Whether a triangle shows is hard to foresee: no branch depends on it.
+    // No branch depends on whether a triangle is visible, because that is hard to predict.
     const bool shows = coverSmall(pane, setup, steps, n, test);
     seen |= static_cast<unsigned>(shows) << n;
     pane.records += static_cast<std::uint32_t>(shows);

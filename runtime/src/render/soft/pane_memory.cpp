@@ -37,7 +37,8 @@ std::size_t layOut(std::byte* block, std::size_t tiles, PaneScratch& scratch) {
   constexpr std::size_t kTilePixels = std::size_t{kTileEdge} * kTileEdge;
   pieces.take(scratch.depth, tiles * kTilePixels);
   pieces.take(scratch.ids, tiles * kTilePixels);
-  // Reads go beyond the tiles, since they take squares of four by four tiles or rows of sixteen.
+  // Reads go beyond the last tile, since they take squares of up to four by four tiles or rows of
+  // up to sixteen.
   pieces.take(scratch.tile_depth, tiles + std::size_t{4} * kMostTiles);
   pieces.take(scratch.tile_changed, kMostTiles + 4);
   pieces.take(scratch.bucket_starts, kBuckets + 1);

@@ -1,21 +1,21 @@
-// A pane while it is drawn: what drawing and resolving share.
+// The state of a pane while it is drawn, which drawing and resolving share.
 namespace galactic::render {
 namespace {
 
 struct Pane {
   const PaneTask* task;
   const PaneScratch* scratch;
-  /// In blocks and in tiles, whole.
+  /// Size of the pane in whole blocks and in whole tiles.
   std::uint32_t columns, rows, tile_columns;
-  /// In use.
+  /// Records in use.
   std::uint32_t records;
   PaneCounts counts;
   bool shades;
-  /// Whether some pixels are shaded already.
+  /// Whether some pixels have already been shaded.
   bool has_shaded;
 };
 
-/// Nothing is drawn on it yet; record 0 is the background's.
+/// A pane on which nothing is drawn yet; record 0 is the background's.
 inline Pane newPane(const PaneTask& task, const PaneScratch& scratch) {
   const std::uint32_t tiles_across = (task.width + kTileEdge - 1) / kTileEdge;
   const std::uint32_t tiles_down = (task.height + kTileEdge - 1) / kTileEdge;
@@ -30,7 +30,7 @@ inline Pane newPane(const PaneTask& task, const PaneScratch& scratch) {
           .has_shaded = false};
 }
 
-/// What pixels have for a record: where it begins.
+/// What pixels store for a record: the index of its first number.
 inline IntLanes idOf(std::uint32_t number) {
   return spread(static_cast<std::int32_t>(number * kRecordStride));
 }
@@ -45,13 +45,13 @@ inline float* colorsAt(const Pane& pane, std::uint32_t number) {
 /// Rows of pixels in a vector.
 constexpr std::uint32_t kHigh = kBlocks * kBlockHeight;
 
-/// Where a vector of pixels lies in the pane.
+/// Where the data of a vector of pixels lies.
 struct BlockPlace {
   float* depth;
   std::int32_t* ids;
 };
 
-/// `row`: of its first block.
+/// `row`: the row of the vector's first block.
 inline BlockPlace placeOf(const Pane& pane, std::uint32_t column, std::uint32_t row) {
   const std::size_t at = (std::size_t{row / kBlocks} * pane.columns + column) * kLanes;
   return {pane.scratch->depth + at, pane.scratch->ids + at};
@@ -60,7 +60,7 @@ inline BlockPlace placeOf(const Pane& pane, std::uint32_t column, std::uint32_t 
 /// From one row of vectors to the next.
 inline std::size_t rowStride(const Pane& pane) { return std::size_t{pane.columns} * kLanes; }
 
-/// Of a vector of pixels from the first one on, row after row.
+/// How far each pixel of a vector is from the first one, to the right and down.
 inline IntLanes pixelsRight() {
   constexpr std::int32_t kRight[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
   return load<IntLanes>(kRight);
@@ -76,12 +76,12 @@ inline IntLanes laneNumbers() {
   return load<IntLanes>(kNumbers);
 }
 
-/// The first `count` lanes, or all: bit n for lane n.
+/// The first `count` lanes, or all if there are fewer: bit n for lane n.
 inline unsigned firstLanes(std::uint32_t count) {
   return count < kLanes ? (1U << count) - 1 : kAllLanes;
 }
 
-/// The pixels from those of a block on.
+/// The pixels of a vector that begins at a block.
 inline PixelLanes pixelsOf(std::uint32_t column, std::uint32_t row, Lanes w) {
   const auto x = static_cast<float>(column * kBlockWidth);
   const auto y = static_cast<float>(row * kBlockHeight);

@@ -2,13 +2,13 @@
 namespace galactic::render {
 namespace {
 
-/// A vector of records before it is known which of them are needed.
+/// A vector of records, made before it is known which of them are needed.
 struct alignas(64) GroupRecords {
   float records[kLanes][kRecordStride];
   float colors[kLanes][kRecordStride];
 };
 
-/// The records of a group of small triangles.
+/// Makes the records of a group of small triangles.
 void makeRecords(ClusterState& state, const SmallGroup& group, GroupRecords& records) {
   Lanes fields[kWidth] = {};
   if (state.facts.isTextured()) readCoordinates(state);
@@ -18,14 +18,14 @@ void makeRecords(ClusterState& state, const SmallGroup& group, GroupRecords& rec
   surfacePlanes(state, group, more);
   storeTransposed(more, records.records[0] + kTexels, kRecordStride);
   if (state.facts.color_kind != kHasColors) return;
-  // Sixteen, of which the last four stay 0.
+  // Sixteen vectors, of which the last four stay 0.
   Lanes colors[2 * kWidth] = {};
   colorPlanes(state, group, colors);
   storeTransposed(colors, records.colors[0], kRecordStride);
   storeTransposed(colors + kWidth, records.colors[0] + kWidth, kRecordStride);
 }
 
-/// Moves the records of triangles that are seen to the next free numbers.
+/// Copies the records of the triangles in `seen` to the next free places, from `number` on.
 void keepRecords(const Pane& pane, const ClusterState& state, const GroupRecords& records,
                  unsigned seen, std::uint32_t number) {
   constexpr std::size_t kBytes = sizeof(float) * kRecordStride;
@@ -37,14 +37,14 @@ void keepRecords(const Pane& pane, const ClusterState& state, const GroupRecords
   }
 }
 
-/// Passes pixels whose surface is there, of the triangle with this record.
+/// Passes the pixels where the surface of the triangle with this record has no hole.
 struct AlphaTest {
   static constexpr bool kTests = true;
   const Pane* pane;
   OneRecord record, colors;
   std::int32_t least_alpha;
 
-  /// The sign bits tell which.
+  /// Returns a vector with the sign set for pixels that pass.
   [[gnu::noinline]] IntLanes operator()(const BlockPlace& place, Lanes z) const {
     const auto vector = static_cast<std::uint32_t>((place.depth - pane->scratch->depth) / kLanes);
     const PixelLanes pixels =

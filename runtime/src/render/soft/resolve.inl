@@ -1,5 +1,5 @@
-// From what is seen at each pixel to the images, a vector of pixels at a time: one block where it
-// has eight lanes, two that lie side by side where it has sixteen.
+// Computes the images from what is visible at each pixel, a vector of pixels at a time: one block
+// if vectors have eight lanes, two blocks below each other if they have sixteen.
 namespace galactic::render {
 namespace {
 
@@ -12,12 +12,12 @@ struct EachRecord {
 
 /// A vector of pixels before its texels are read.
 struct Shading {
-  /// Of the records; only the last two are set where no lane has a texture.
+  /// From the records; if no lane has a texture, only the last two members are set.
   TexturePlaces places;
-  /// Not set where no lane has a texture.
+  /// Not set if no lane has a texture.
   SurfacePlace surface;
   LaneSet flat;
-  /// See lightAt(); not set where no light is.
+  /// See lightAt(); not set if all pixels show the background.
   IntLanes light;
 
   bool isTextured() const { return (~bitsOf(flat) & kAllLanes) != 0; }
@@ -51,7 +51,7 @@ inline void placeTexels(Shading& shading) {
   if (shading.isTextured()) placeSurface(shading.places, shading.flat, shading.surface);
 }
 
-/// `pixels`: what gives them where colors are interpolated.
+/// `pixels`: a function that returns the pixels, called only if colors have to be interpolated.
 template <class Pixels>
 [[gnu::always_inline]] inline IntLanes finishShading(const Pane& pane, const std::int32_t* ids,
                                                      const Pixels& pixels, const Shading& shading) {
@@ -59,7 +59,7 @@ template <class Pixels>
   IntLanes colors = shading.places.texels;
   if (shading.isTextured()) colors = sampleAt(*pane.task, shading.places, shading.surface);
   if (signBits(kind) != 0) {
-    // Lanes without colors look at record 0.
+    // Lanes without colors read record 0.
     alignas(kVectorBytes) std::int32_t colored[kLanes];
     store(colored, load<IntLanes>(ids) & (kind >> 31));
     EachRecord planes;
@@ -69,7 +69,7 @@ template <class Pixels>
   }
   const LaneSet lit = bySign(kind << 1);
   if (bitsOf(lit) != 0) colors = pickFrom(lit, timesLight(colors, shading.light), colors);
-  // What is drawn hides all behind it.
+  // Whatever is drawn is opaque: its alpha is 255.
   return pickFrom(whereEqual(load<IntLanes>(ids), spread(0)), colors,
                   colors | static_cast<std::int32_t>(0xFF000000U));
 }
@@ -80,7 +80,8 @@ inline IntLanes semanticsOf(const Pane& pane, const std::int32_t* ids) {
                 load<IntLanes>(ids));
 }
 
-/// Where the pixels of one or two blocks lie in the whole image, and how many are within.
+/// Where the pixels of a vector lie in the whole image, and how many columns and rows of them are
+/// inside the pane.
 struct BlockTarget {
   std::size_t pixel;
   std::uint32_t width, height;
@@ -109,7 +110,7 @@ inline void writeWords(const PaneTask& task, const BlockTarget& target, void* im
   }
 }
 
-/// The place of a lane's pixel among those of its vector.
+/// Column and row of a lane's pixel within its vector.
 constexpr std::uint32_t laneX(std::uint32_t lane) { return lane % kBlockWidth; }
 constexpr std::uint32_t laneY(std::uint32_t lane) { return lane / kBlockWidth; }
 
@@ -126,7 +127,7 @@ inline void writeTriples(const PaneTask& task, const BlockTarget& target, IntLan
   }
 }
 
-/// Puts what the image has already in the place of pixels that are shaded.
+/// Replaces pixels that have already been shaded by what the image has there.
 inline IntLanes keepShaded(const PaneTask& task, const BlockTarget& target, IntLanes ids,
                            IntLanes words, const std::uint8_t* image, std::uint32_t bytes_each) {
   for (std::uint32_t n = 0; n < kLanes; ++n) {
@@ -141,11 +142,11 @@ inline IntLanes keepShaded(const PaneTask& task, const BlockTarget& target, IntL
   return words;
 }
 
-/// A vector of pixels on its way to the images: what is seen at each, and where it goes.
+/// A vector of pixels while it is resolved: what is visible at each, and where it goes.
 struct Resolving {
   BlockTarget target;
   PixelLanes pixels;
-  /// As in the pane, and with 0 in place of kShaded.
+  /// `ids`: as in the pane; `shown`: the same with 0 in place of kShaded.
   const std::int32_t* ids;
   alignas(kVectorBytes) std::int32_t shown[kLanes];
   Shading shading;
@@ -186,7 +187,7 @@ struct Resolving {
   writeWords(task, target, task.semantics, semantics);
 }
 
-/// Writes a vector of pixels of which some lie outside of the image or are shaded already.
+/// Writes a vector of pixels, some of which may lie outside the image or have already been shaded.
 inline void resolveVector(const Pane& pane, std::uint32_t column, std::uint32_t row) {
   const PaneTask& task = *pane.task;
   Resolving pixels;
@@ -201,16 +202,16 @@ inline void resolveVector(const Pane& pane, std::uint32_t column, std::uint32_t 
   endColors(pane, pixels);
 }
 
-/// Vectors that take each step together: none of them waits for the one before, so the processor
-/// works on several at a time, and the memory has time to bring the texels.
+/// This many vectors take each step together. None of them waits for the one before, so the
+/// processor works on several at a time, and there is time to load the texels.
 constexpr std::uint32_t kTogether = 16;
 
-/// `count` vectors of pixels, at most kTogether, that lie beside each other, whole in the image,
-/// and are not shaded yet.
+/// `count` vectors of pixels, at most kTogether, that lie beside each other and entirely inside the
+/// image and have not been shaded yet.
 struct WholeVectors {
   const Pane& pane;
   std::uint32_t column, row, count;
-  /// Rows of pixels to the vectors below, 0 where there are none.
+  /// How many rows of pixels further down the next row of vectors lies; 0 if there is none.
   std::uint32_t below;
   BlockPlace place = placeOf(pane, column, row);
   BlockTarget target = blockTarget(*pane.task, column, row);
@@ -233,9 +234,9 @@ struct WholeVectors {
   }
 };
 
-/// Asks the memory for a line of an image, of as many bytes each pixel, that will be written soon:
-/// of the rows of vectors below these. All are asked for when each vector has done so.
-/// Always inline: the compiler drops calls of functions that do nothing else.
+/// Prefetches a part of an image with `bytes_each` bytes per pixel that will be written soon: the
+/// rows of pixels below these vectors. After each vector has done so, all of it is prefetched.
+/// Always inline, because the compiler drops calls of functions that do nothing else.
 [[gnu::always_inline]] inline void fetchBelow(const WholeVectors& vectors, std::uint32_t n,
                                               const void* image, std::size_t bytes_each) {
   const std::uint32_t row = n % kHigh;
@@ -244,7 +245,7 @@ struct WholeVectors {
   __builtin_prefetch(static_cast<const std::uint8_t*>(image) + bytes_each * pixel, 1);
 }
 
-/// GCC 12 fails where this is part of a loop that it can see.
+/// Not inline, because GCC 12 fails if it sees this as part of a loop.
 [[gnu::noinline]] void writeSemantics(const WholeVectors& vectors, std::uint32_t n) {
   vectors.write(vectors.pane.task->semantics, n, semanticsOf(vectors.pane, vectors.ids(n)));
 }
@@ -298,7 +299,7 @@ inline void resolve(const Pane& pane) {
   }
 }
 
-/// Shades what is seen so far, so that the records can be used again.
+/// Shades what is visible so far, so that the records can be used again.
 inline void makeRoom(Pane& pane) {
   const PaneTask& task = *pane.task;
   for (std::uint32_t row = 0; row < pane.rows; row += kBlocks) {

@@ -1,8 +1,9 @@
-// Triangles of a cluster: which of them are drawn, and by which way.
+// Triangles of a cluster: which of them are drawn, and in which way.
 namespace galactic::render {
 namespace {
 
-/// Returns at most the least 1/w of the vertices; where one of them is bad it means nothing.
+/// Returns a lower bound of the least 1/w of the vertices, which means nothing if one of them is
+/// bad.
 float placeVertices(ClusterState& state) {
   const RenderCluster& cluster = *state.facts.cluster;
   const std::uint16_t* block = vertexBlock(state.facts, 0);
@@ -10,7 +11,7 @@ float placeVertices(ClusterState& state) {
   Lanes farthest = spread(__builtin_inff());
   for (std::uint32_t v = 0; v < cluster.vertex_count; v += kLanes, block += kVertexRows * kLanes) {
     unsigned good = placeVector(*state.frame, cluster, vertexRows(cluster, block, v), v, state);
-    // What follows the last vertex is not looked at.
+    // Lanes after the last vertex do not count as bad.
     if (cluster.vertex_count - v < kLanes) good |= kAllLanes << (cluster.vertex_count - v);
     bad |= ~good & kAllLanes;
     farthest = lesser(farthest, load<Lanes>(state.z + v));
@@ -19,11 +20,12 @@ float placeVertices(ClusterState& state) {
   return least(farthest);
 }
 
-/// Notes which vertices lie beside the pane. What is left of a triangle whose corners all lie
-/// beyond the same edge lies there, too: clipping makes corners between those that there are.
+/// Marks the vertices that lie beside the pane. If all corners of a triangle lie beyond the same
+/// edge, so does what clipping leaves of it, because clipping only adds corners between the
+/// existing ones.
 void markBeside(const PaneTask& task, ClusterState& state) {
-  // A pixel further out than the pane, as corners move when they are rounded, and what rounding can
-  // do before, relative to the size of what is added.
+  // The margin is one pixel, because corners move when they are rounded. kClipRounding bounds the
+  // rounding errors before, relative to the size of what is added.
   constexpr float kMargin = kSubpixels;
   constexpr float kClipRounding = 4e-6F;
   const PaneEdges edges = paneEdges(task);
@@ -55,11 +57,11 @@ void readCoordinates(ClusterState& state) {
   }
 }
 
-/// Triangles of a cluster that are worth drawing, by the way they take; corners go around
-/// clockwise on the screen where the triangle shows its face.
+/// Triangles of a cluster that are worth drawing, sorted by how they are drawn. Their corners go
+/// clockwise on the screen if the triangle shows its face.
 struct Survivors {
-  /// Behind the last one of each there is room for a vector, and behind the last small one a vector
-  /// of triangles that are all of vertex 0.
+  /// Each list has room for a vector after its last triangle. After the last small and the last
+  /// large one there is a vector of triangles whose corners are all vertex 0.
   alignas(64) std::int32_t small[kMostInCluster + kLanes];
   std::int32_t large[kMostInCluster + kLanes];
   std::int32_t clipped[kMostInCluster + kLanes];
@@ -71,7 +73,7 @@ inline void append(std::int32_t* list, std::uint32_t& count, IntLanes corners, u
   count += static_cast<std::uint32_t>(__builtin_popcount(which));
 }
 
-/// The depths of a cluster's tiles, where these are few: looked up without loads.
+/// The depths of a cluster's tiles, if these are so few that they can be looked up without loads.
 struct FewTiles {
   alignas(kVectorBytes) float depth[kFewEntries + kLanes];
   std::int32_t wide, before;
@@ -85,7 +87,7 @@ struct FewTiles {
   }
 };
 
-/// False where the tiles are too many.
+/// Returns false if there are too many tiles.
 inline bool readFewTiles(const Pane& pane, const SeenCluster& seen, FewTiles& few) {
   few.wide = seen.tiles[1] - seen.tiles[0] + 1;
   const auto count = static_cast<std::uint32_t>(few.wide * (seen.tiles[3] - seen.tiles[2] + 1));
