@@ -1,12 +1,12 @@
-// A block of threads, the way kernels are written here: work between two barriers is a function of
-// the thread's number. On a device each thread calls it for itself and waits for the others; on the
-// processor it is a loop.
+// A block of threads. Kernels write the work between two barriers as a function of the thread's
+// number. On a device each thread calls the function for itself and waits for the others; on the
+// processor a loop calls it for all threads.
 namespace galactic::render::cuda {
 namespace {
 
 #if defined(__CUDA__) || defined(__CUDACC__)
 
-// clang has no names for these without a CUDA toolkit, nvcc has no others.
+// Without a CUDA toolkit clang does not have the usual names of these, and nvcc has no other names.
 #if defined(__CUDACC__)
 __attribute__((device)) inline std::uint32_t threadNumber() { return threadIdx.x; }
 __attribute__((device)) inline std::uint32_t blockNumber() { return blockIdx.x; }
@@ -39,7 +39,7 @@ struct Block {
 struct Block {
   std::uint32_t index, count;
   std::uint32_t threads;
-  /// Threads run in the order of (n * stride + first) % threads: no image depends on it.
+  /// Threads run in the order (n * stride + first) % threads, which no image may depend on.
   std::uint32_t stride, first;
 
   template <class Body>
@@ -50,7 +50,7 @@ struct Block {
 
 #endif
 
-// Atomic, in no order with other memory.
+// Atomic, but not ordered with accesses to other memory.
 #if defined(__CUDACC__)
 
 template <class Number>
@@ -68,7 +68,7 @@ __attribute__((device)) inline std::uint32_t addAtomically(std::uint32_t* to, st
 __attribute__((device)) inline std::uint64_t addAtomically(std::uint64_t* to, std::uint64_t more) {
   return atomicAdd(reinterpret_cast<unsigned long long*>(to), more);
 }
-/// Puts `value` where `empty` was; returns what was there before.
+/// Replaces `empty` by `value`; returns what was there before.
 __attribute__((device)) inline std::uint32_t claimAtomically(std::uint32_t* at, std::uint32_t empty,
                                                              std::uint32_t value) {
   return atomicCAS(at, empty, value);
@@ -92,7 +92,7 @@ template <class Number>
 GALACTIC_EVERYWHERE inline Number addAtomically(Number* to, Number more) {
   return __atomic_fetch_add(to, more, __ATOMIC_RELAXED);
 }
-/// Puts `value` where `empty` was; returns what was there before.
+/// Replaces `empty` by `value`; returns what was there before.
 GALACTIC_EVERYWHERE inline std::uint32_t claimAtomically(std::uint32_t* at, std::uint32_t empty,
                                                          std::uint32_t value) {
   __atomic_compare_exchange_n(at, &empty, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
@@ -112,7 +112,7 @@ GALACTIC_EVERYWHERE inline void greaterAtomically(std::uint64_t* to, std::uint64
 #endif
 
 GALACTIC_EVERYWHERE inline void raiseAtomically(std::uint64_t* to, std::uint64_t value) {
-  // What is read here may be old, but never too high.
+  // The number read here may be out of date, but it is never too high.
   if (loadAtomically(to) < value) greaterAtomically(to, value);
 }
 

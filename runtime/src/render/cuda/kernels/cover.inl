@@ -1,4 +1,5 @@
-// Pixels of a triangle, one of every block for each thread, where `soft` has a vector of them.
+// Pixels of a triangle: each thread takes one pixel of every block, where the `soft` renderer takes
+// a vector of pixels.
 namespace galactic::render {
 namespace {
 
@@ -7,8 +8,9 @@ struct PixelOffsets {
   IntLanes right, down;
 };
 
-/// Draws triangle `n` of a group, block by block, on a target that knows start(column, row),
-/// cover(edges, z), right() and nextRow(); the sign bits of the result tell which pixels it shows.
+/// Draws triangle `n` of a group, block by block, on a target with the functions start(column,
+/// row), cover(edges, z), right() and nextRow(). The sign bits of the result are set for pixels in
+/// which the triangle is visible.
 template <class Target>
 GALACTIC_EVERYWHERE inline IntLanes coverTriangle(const GroupSetup& group, unsigned n,
                                                   const PixelOffsets& pixels, Target& target) {
@@ -50,7 +52,7 @@ GALACTIC_EVERYWHERE inline IntLanes coverTriangle(const GroupSetup& group, unsig
   return hit;
 }
 
-/// Sets what depends on the pixels of a block that are drawn.
+/// Sets the offsets, which depend on the pixels of a block that are drawn.
 GALACTIC_EVERYWHERE inline void setOffsets(LargeSetup& setup, const PixelOffsets& pixels) {
   for (LongEdge& edge : setup.edges) {
     edge.offsets = pixels.right * spread(edge.right) + pixels.down * spread(edge.down);
@@ -59,8 +61,8 @@ GALACTIC_EVERYWHERE inline void setOffsets(LargeSetup& setup, const PixelOffsets
                     toFloat(pixels.down) * spread(static_cast<float>(setup.depth.down));
 }
 
-/// At least the largest 1/w that coverTile() finds in a tile: that of the corner of its plane, with
-/// room for what rounding adds to a sum of a few numbers.
+/// An upper bound of 1/w in coverTile() for a tile: 1/w at a corner of the tile, plus a bound of
+/// the rounding error of a sum of a few numbers.
 GALACTIC_EVERYWHERE inline float nearestInTile(const LargeSetup& setup, std::int32_t tile_x,
                                                std::int32_t tile_y) {
   constexpr double kLast = kTileEdge - 1;
@@ -78,7 +80,8 @@ GALACTIC_EVERYWHERE inline float nearestInTile(const LargeSetup& setup, std::int
                                                   : setup.z_most;
 }
 
-/// Edge functions at the first block of a tile; says whether the triangle can touch the tile.
+/// Computes the edge functions at the first block of a tile; returns whether the triangle can touch
+/// the tile.
 GALACTIC_EVERYWHERE inline bool tileEdges(const LargeSetup& setup, std::int32_t tile_x,
                                           std::int32_t tile_y, EdgeLanes& lanes) {
   constexpr std::int64_t kMost = 1 << 30;
@@ -89,7 +92,7 @@ GALACTIC_EVERYWHERE inline bool tileEdges(const LargeSetup& setup, std::int32_t 
     const std::int64_t value =
         edge.start + edge.right * (kEdge * tile_x) + edge.down * (kEdge * tile_y);
     if (value + edge.reach < 0) return false;
-    // Further out the sign is the same in the whole tile: changes per pixel are under 2^24.
+    // Beyond this, the sign is the same in the whole tile, since changes per pixel are below 2^24.
     starts[n] = static_cast<std::int32_t>(value > kMost ? kMost : value < -kMost ? -kMost : value);
   }
   lanes = {setup.edges[0].offsets + spread(starts[0]), setup.edges[1].offsets + spread(starts[1]),

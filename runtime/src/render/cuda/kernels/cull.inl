@@ -1,8 +1,9 @@
-// Instances in front of their cameras; the clusters of each pane that may be seen, nearest first.
+// Places instances in front of their cameras, and lists the clusters of each pane that may be
+// visible, nearest first.
 namespace galactic::render::cuda {
 namespace {
 
-/// What is drawn on pane `pane` of view `view` of a slice.
+/// The task of pane `pane` of view `view` of a slice.
 GALACTIC_EVERYWHERE inline PaneTask paneTask(const ViewSlice& slice, std::uint32_t view,
                                              std::uint32_t pane) {
   const DeviceView& from = slice.views[view];
@@ -22,7 +23,7 @@ GALACTIC_EVERYWHERE inline PaneTask paneTask(const ViewSlice& slice, std::uint32
   return task;
 }
 
-/// What a view shows as `number`, in the order of forModels().
+/// Model `number` of a view, in the order of forModels().
 struct ShownModel {
   DeviceInstance instance;
   std::uint32_t semantic;
@@ -48,7 +49,7 @@ GALACTIC_EVERYWHERE inline ShownModel shownAs(const ViewSlice& slice, const Devi
       kSemanticsOfPack};
 }
 
-/// Places the instances of the view that the block stands for, and says what its panes show.
+/// Places the models of the block's view and makes the tasks of its panes. Each block has one view.
 GALACTIC_EVERYWHERE inline void placeInstances(const Block& block, const ViewSlice& slice) {
   const DeviceView& view = slice.views[block.index];
   block.each([&](std::uint32_t thread) {
@@ -69,12 +70,13 @@ GALACTIC_EVERYWHERE inline void placeInstances(const Block& block, const ViewSli
   });
 }
 
-/// Models that are looked at together.
+/// Models that are culled together.
 constexpr std::uint32_t kModelsAtOnce = 32;
 
 struct CullShared {
   CullFrame frames[kModelsAtOnce];
-  /// Clusters of the models that may show, and of those before them.
+  /// How many clusters the models have, 0 for models that cannot be visible, and the clusters of
+  /// the models before them.
   std::uint32_t clusters[kModelsAtOnce];
   std::uint32_t starts[kModelsAtOnce + 1];
   std::uint32_t in_bucket[kBuckets];
@@ -84,7 +86,7 @@ struct CullShared {
   std::uint32_t first_item[kPasses];
 };
 
-/// Where a pane's lists are.
+/// The lists of a pane.
 struct PaneLists {
   const PaneTask* task;
   SeenCluster* seen;
@@ -97,8 +99,8 @@ GALACTIC_EVERYWHERE inline PaneLists paneLists(const ViewSlice& slice, std::uint
   return {slice.tasks + pane, slice.seen + first, slice.order + first, slice.by_bucket + first};
 }
 
-/// Prepares the models from `first` on: what culling needs of them, and how many clusters they
-/// have.
+/// Prepares the models from `first` on: computes what culling needs of them, and counts their
+/// clusters.
 GALACTIC_EVERYWHERE inline void frameModels(const Block& block, const PaneTask& task,
                                             std::uint32_t first, CullShared& shared) {
   block.each([&](std::uint32_t thread) {
@@ -121,7 +123,7 @@ GALACTIC_EVERYWHERE inline void frameModels(const Block& block, const PaneTask& 
   });
 }
 
-/// The last of the models that start at or before `at`: the one that has this cluster.
+/// The model that has cluster `at`: the last one that starts at or before it.
 GALACTIC_EVERYWHERE inline std::uint32_t modelAt(const std::uint32_t* starts, std::uint32_t at) {
   std::uint32_t low = 0;
   std::uint32_t high = kModelsAtOnce;
@@ -146,7 +148,7 @@ GALACTIC_EVERYWHERE inline void noteCluster(const BoxesSeen& one, const PaneTask
   lists.seen[addAtomically(&shared.seen, 1U)] = entry;
 }
 
-/// Notes which clusters of the prepared models may be seen, in no order.
+/// Lists the clusters of the prepared models that may be visible, in no particular order.
 GALACTIC_EVERYWHERE inline void lookAtClusters(const Block& block, const PaneLists& lists,
                                                std::uint32_t first, CullShared& shared) {
   const PaneTask& task = *lists.task;
@@ -174,7 +176,8 @@ GALACTIC_EVERYWHERE inline bool comesBefore(const SeenCluster& a, const SeenClus
   return a.model != b.model ? a.model < b.model : a.cluster < b.cluster;
 }
 
-/// The order in which the `soft` renderer draws: by bucket, then by model and cluster.
+/// Sorts clusters in the order in which the `soft` renderer draws them: by bucket, then by model
+/// and cluster.
 GALACTIC_EVERYWHERE inline void sortSeen(const Block& block, const PaneLists& lists,
                                          CullShared& shared) {
   block.each([&](std::uint32_t thread) {
@@ -202,10 +205,11 @@ GALACTIC_EVERYWHERE inline void sortSeen(const Block& block, const PaneLists& li
   });
 }
 
-/// How many of a pane's clusters are drawn in the first pass: what is near hides much of the rest.
+/// How many of a pane's clusters are drawn in the first pass: the nearest ones, which hide many of
+/// the others.
 GALACTIC_EVERYWHERE inline std::uint32_t inFirstPass(std::uint32_t seen) { return (seen + 3) / 4; }
 
-/// Adds the pane's clusters to those of all panes.
+/// Adds the pane's clusters to the work items of all panes.
 GALACTIC_EVERYWHERE inline void addItems(const Block& block, const ViewSlice& slice,
                                          CullShared& shared) {
   block.each([&](std::uint32_t thread) {
@@ -223,7 +227,7 @@ GALACTIC_EVERYWHERE inline void addItems(const Block& block, const ViewSlice& sl
   });
 }
 
-/// Lists what may be seen on the pane that the block stands for.
+/// Lists the clusters that may be visible on the block's pane. Each block has one pane.
 GALACTIC_EVERYWHERE inline void cullPane(const Block& block, CullShared& shared,
                                          const ViewSlice& slice) {
   const PaneLists lists = paneLists(slice, block.index);

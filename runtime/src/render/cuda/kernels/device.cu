@@ -1,10 +1,10 @@
-// The kernels for a device: clang makes PTX of this file without a CUDA toolkit, nvcc with one.
+// The kernels for a device. clang compiles this file to PTX without a CUDA toolkit, nvcc with one.
 #include "render/cuda/kernels/kernels.inl"
 
 #define GALACTIC_KERNEL                                            \
   extern "C" __attribute__((global)) __attribute__((launch_bounds( \
       galactic::render::cuda::kBlockThreads, galactic::render::cuda::kBlocksAtOnce)))
-// Constructors do not run in shared memory.
+// Bytes instead of a variable of the type, since constructors do not run in shared memory.
 #define GALACTIC_SHARED(Type, name)                                        \
   __attribute__((shared)) static unsigned char name##_memory[sizeof(Type)] \
       __attribute__((aligned(64)));                                        \

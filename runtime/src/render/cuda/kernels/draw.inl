@@ -1,10 +1,10 @@
-// Clusters onto the pixels of their panes: a block draws one cluster after the other.
+// Draws clusters on the pixels of their panes. Each block draws one cluster after the other.
 namespace galactic::render::cuda {
 namespace {
 
-/// What a pixel shows: 1/w in the upper half, so that nearer is more; below it the complement of
-/// the cluster's rank and the piece, so that of equally near ones the first in the order of drawing
-/// is more. 0 where nothing is.
+/// What is visible at a pixel, as a number that is larger for what is nearer: 1/w in the upper
+/// half, and in the lower half the complement of the cluster's rank and the piece, so that of
+/// equally near ones the first in the order of drawing is larger. 0 if nothing is visible.
 GALACTIC_EVERYWHERE inline std::uint64_t seenAt(float z, std::uint32_t rank, std::uint32_t piece) {
   const std::uint32_t order = rank << kPieceBits | piece;
   return static_cast<std::uint64_t>(as<std::uint32_t>(z)) << 32U | ~order;
@@ -16,33 +16,33 @@ GALACTIC_EVERYWHERE inline float depthOfSeen(std::uint64_t seen) {
 /// Pieces of a cluster are numbered in the order in which the `soft` renderer draws them.
 constexpr std::uint32_t kFirstLarge = kMostInCluster;
 constexpr std::uint32_t kFirstCut = 2 * kMostInCluster;
-/// Triangles of the largest fan.
+/// Most triangles of a fan.
 constexpr std::uint32_t kMostInFan = kMostCorners - 2;
 
-/// Pixels that a small triangle can cover, first and last: a pane has at most 256 in a row.
+/// First and last pixels that a small triangle can cover. A pane has at most 256 in a row.
 struct PixelBox {
   std::uint8_t left, right, top, bottom;
 };
 
-/// A large triangle, or what clipping leaves of one, that all threads draw together.
+/// A large triangle, or a part of a clipped one, that all threads draw together.
 struct LargePiece {
   LargeSetup setup;
   TileBox tiles;
   std::uint32_t piece;
 };
-/// Drawn between two barriers.
+/// Most pieces that are drawn between two barriers.
 constexpr std::uint32_t kMostPieces = 48;
 constexpr std::uint32_t kMostCutTogether = kMostPieces / kMostInFan;
 
 struct DrawShared {
   ClusterState state;
   VertexFrame frame;
-  /// Of all clusters that the block drew.
+  /// Totals of all clusters that the block drew.
   std::uint64_t clusters_drawn, triangles_drawn;
   std::uint32_t shown;
   std::uint32_t small_count, shared_count, large_count, cut_count, piece_count;
   std::uint8_t small[kMostInCluster];
-  /// Places of small triangles in that list: those that several threads share.
+  /// The small triangles that several threads share, by their places in `small`.
   std::uint8_t shared_small[kMostInCluster];
   std::uint8_t large[kMostInCluster];
   std::uint8_t cut[kMostInCluster];
@@ -50,7 +50,7 @@ struct DrawShared {
   PixelBox boxes[kMostInCluster];
   union {
     GroupSetup setups[kMostInCluster];
-    /// When the small ones are drawn.
+    /// Used after the small triangles have been drawn.
     LargePiece pieces[kMostPieces];
   };
 };
@@ -75,7 +75,7 @@ GALACTIC_EVERYWHERE inline DrawPlace drawPlace(const ViewSlice& slice, const Wor
           item.rank};
 }
 
-/// Eight threads share a triangle: each draws one pixel of every block.
+/// If threads share a triangle, eight of them do, each of which draws one pixel of every block.
 constexpr std::uint32_t kTeam = 8;
 
 GALACTIC_EVERYWHERE inline PixelOffsets pixelOf(std::uint32_t lane) {
@@ -89,7 +89,7 @@ struct AllPass {
   }
 };
 
-/// Passes pixels where the surface of the triangle with these records is there.
+/// Passes the pixels where the surface of the triangle with these records has no hole.
 struct SurfacePass {
   const PaneTask* task;
   std::int32_t least_alpha;
@@ -103,7 +103,7 @@ struct SurfacePass {
   }
 };
 
-/// One pixel of every block: see coverTriangle().
+/// Draws one pixel of every block, as a target of coverTriangle().
 template <class Test>
 struct PixelTarget {
   const DrawPlace* place;
@@ -136,7 +136,7 @@ struct PixelTarget {
   }
 };
 
-/// Whether the first pass left something to be seen where the cluster is.
+/// Finds out whether the cluster may be visible behind what the first pass drew; sets `shown`.
 GALACTIC_EVERYWHERE inline void lookBehind(const Block& block, const DrawPlace& place,
                                            DrawShared& shared) {
   block.each([&](std::uint32_t thread) {
@@ -195,8 +195,8 @@ GALACTIC_EVERYWHERE inline void noteTriangle(std::uint8_t* list, std::uint32_t* 
   list[addAtomically(count, 1U)] = static_cast<std::uint8_t>(number);
 }
 
-/// Lists the triangles that can cover a pixel, and sets up the small ones. `compares`: those that
-/// the tiles' depths hide are left out.
+/// Lists the triangles that can cover a pixel, and sets up the small ones. `compares`: whether to
+/// leave out small ones that the tiles' depths hide.
 GALACTIC_EVERYWHERE inline void sortTriangles(const Block& block, const DrawPlace& place,
                                               bool compares, DrawShared& shared) {
   block.each([&](std::uint32_t thread) {
@@ -227,7 +227,7 @@ GALACTIC_EVERYWHERE inline void sortTriangles(const Block& block, const DrawPlac
   });
 }
 
-/// The records of a small triangle.
+/// Writes the records of a small triangle.
 template <class State>
 GALACTIC_EVERYWHERE inline void recordSmall(const State& state, const SmallGroup& group,
                                             float* record, float* colors) {
@@ -249,8 +249,8 @@ GALACTIC_EVERYWHERE inline SurfacePass surfacePass(const DrawPlace& place,
   return pass;
 }
 
-/// One pixel of every block of a small triangle whose surface has holes. A function of its own:
-/// what it keeps of the surface does not take registers from those that have none.
+/// Draws one pixel of every block of a small triangle whose surface has holes. Not inline, so that
+/// its data takes no registers from the drawing of surfaces without holes.
 GALACTIC_EVERYWHERE __attribute__((noinline)) void drawSmallSurface(const DrawPlace& place,
                                                                     const ClusterState& state,
                                                                     std::uint32_t number,
@@ -264,12 +264,12 @@ GALACTIC_EVERYWHERE __attribute__((noinline)) void drawSmallSurface(const DrawPl
   coverTriangle(setup, 0, pixelOf(lane), target);
 }
 
-/// Triangles that can cover at most this many pixels are drawn by one thread each: eight would test
-/// blocks of which most pixels lie beside the triangle.
+/// A triangle that can cover at most this many pixels is drawn by a single thread, because eight
+/// threads would test blocks most of whose pixels lie beside the triangle.
 constexpr std::uint32_t kMostAlone = 64;
 
-/// What coverTriangle() finds for 1/w at a pixel, counted from the first one of the first block: it
-/// goes from block to block, and so must this.
+/// 1/w at a pixel, counted from the first pixel of the first block. It is summed up from block to
+/// block, as in coverTriangle(), so that both round alike.
 GALACTIC_EVERYWHERE inline float depthAt(const GroupSetup& setup, std::uint32_t x,
                                          std::uint32_t y) {
   const float right = setup.z_right[0];
@@ -311,7 +311,7 @@ GALACTIC_EVERYWHERE inline void coverAlone(const DrawPlace& place, const GroupSe
   }
 }
 
-/// Draws the small triangles that take one thread, and lists the others.
+/// Draws the small triangles that need only one thread, and lists the others.
 GALACTIC_EVERYWHERE inline void drawAlone(const Block& block, const DrawPlace& place,
                                           DrawShared& shared, std::uint32_t thread) {
   const bool has_holes = shared.state.facts.surface.least_alpha != 0;
@@ -326,7 +326,7 @@ GALACTIC_EVERYWHERE inline void drawAlone(const Block& block, const DrawPlace& p
   }
 }
 
-/// Draws the other small triangles.
+/// Draws the small triangles that several threads share.
 GALACTIC_EVERYWHERE inline void drawSmall(const Block& block, const DrawPlace& place,
                                           const DrawShared& shared, std::uint32_t thread) {
   const ClusterState& state = shared.state;
@@ -344,7 +344,7 @@ GALACTIC_EVERYWHERE inline void drawSmall(const Block& block, const DrawPlace& p
   }
 }
 
-/// Draws the tiles of a large triangle that are the thread's.
+/// Draws the thread's share of the tiles of a large triangle.
 template <class Test>
 GALACTIC_EVERYWHERE inline void coverTiles(const Block& block, const LargeSetup& setup,
                                            const TileBox& tiles, std::uint32_t thread,
@@ -359,7 +359,8 @@ GALACTIC_EVERYWHERE inline void coverTiles(const Block& block, const LargeSetup&
   }
 }
 
-/// All threads draw one large triangle whose surface has holes. A function of its own, as above.
+/// Draws one large triangle whose surface has holes, with all threads. Not inline, for the same
+/// reason as drawSmallSurface().
 GALACTIC_EVERYWHERE __attribute__((noinline)) void drawLargeSurface(
     const Block& block, const DrawPlace& place, const ClusterState& state, const Corner* corners,
     std::uint32_t piece, std::uint32_t thread) {
@@ -385,7 +386,8 @@ GALACTIC_EVERYWHERE inline void largeCorners(const ClusterState& state, std::uin
   corners[2] = cornerOf(state, static_cast<std::uint32_t>(at.c.v));
 }
 
-/// Calls `draw` with three corners and the piece for all that clipping leaves of a triangle.
+/// Clips a triangle and calls `draw` with three corners and the number of the piece for each
+/// triangle that is left.
 template <class Draw>
 GALACTIC_EVERYWHERE inline void eachOfFan(const ClusterState& state, std::uint32_t number,
                                           const Draw& draw) {
@@ -400,8 +402,8 @@ GALACTIC_EVERYWHERE inline void eachOfFan(const ClusterState& state, std::uint32
   }
 }
 
-/// Large and clipped triangles of a surface with holes, one by one: each thread sets up all of
-/// them.
+/// Draws large and clipped triangles of a surface with holes, one by one. Each thread sets up all
+/// of them.
 GALACTIC_EVERYWHERE __attribute__((noinline)) void drawLargeSurfaces(const Block& block,
                                                                      const DrawPlace& place,
                                                                      const DrawShared& shared,
@@ -430,7 +432,8 @@ GALACTIC_EVERYWHERE inline void notePiece(const DrawPlace& place, const Corner* 
   shared.pieces[addAtomically(&shared.piece_count, 1U)] = {setUpLarge(triangle), tiles, piece};
 }
 
-/// A function of its own: few clusters have triangles to cut, and cutting takes all registers.
+/// Clips a triangle and sets up what is left. Not inline, because few clusters have triangles to
+/// clip, and clipping takes all registers.
 GALACTIC_EVERYWHERE __attribute__((noinline)) void noteCut(const DrawPlace& place,
                                                            std::uint32_t number,
                                                            DrawShared& shared) {
@@ -439,15 +442,15 @@ GALACTIC_EVERYWHERE __attribute__((noinline)) void noteCut(const DrawPlace& plac
   });
 }
 
-/// Draws what was set up: the threads' teams take its tiles in turn. `compares`: see
-/// sortTriangles().
+/// Draws the pieces that were set up. The teams of threads take their tiles in turn. `compares`:
+/// whether to leave out tiles in which a piece is hidden.
 GALACTIC_EVERYWHERE inline void drawPieces(const Block& block, const DrawPlace& place,
                                            bool compares, const DrawShared& shared,
                                            std::uint32_t thread) {
   const std::uint32_t lane = thread % kTeam;
   const std::uint32_t teams = block.threads / kTeam;
   const AllPass all;
-  // Of the next tile.
+  // The team that takes the next tile.
   std::uint32_t team = 0;
   for (std::uint32_t p = 0; p < shared.piece_count; ++p) {
     const TileBox tiles = shared.pieces[p].tiles;
@@ -472,7 +475,8 @@ GALACTIC_EVERYWHERE inline void drawPieces(const Block& block, const DrawPlace& 
   }
 }
 
-/// Draws the triangles that are not small. A thread sets one up, all draw it.
+/// Draws the triangles that are not small. One thread sets up each triangle, and all threads draw
+/// it.
 GALACTIC_EVERYWHERE inline void drawAllLarge(const Block& block, const DrawPlace& place,
                                              bool compares, DrawShared& shared) {
   const auto draw_together = [&](const auto& note, std::uint32_t count, std::uint32_t together) {
@@ -498,7 +502,7 @@ GALACTIC_EVERYWHERE inline void drawAllLarge(const Block& block, const DrawPlace
   draw_together(note_cut, shared.cut_count, kMostCutTogether);
 }
 
-/// Draws the clusters of a pass that are the block's.
+/// Draws the block's share of the clusters of a pass.
 GALACTIC_EVERYWHERE inline void drawClusters(const Block& block, DrawShared& shared,
                                              const ViewSlice& slice, std::uint32_t pass) {
   const std::uint32_t count = slice.counts->items[pass];
@@ -534,7 +538,7 @@ GALACTIC_EVERYWHERE inline void drawClusters(const Block& block, DrawShared& sha
   });
 }
 
-/// The least 1/w of the tiles of a pane; blocks share its tiles.
+/// Measures the least 1/w of the tiles of the block's pane. Each block has one pane.
 GALACTIC_EVERYWHERE inline void measureTiles(const Block& block, const ViewSlice& slice) {
   const std::uint32_t pane = block.index;
   const PaneTask& task = slice.tasks[pane];

@@ -1,10 +1,10 @@
-// From what is seen at each pixel to the images. A block writes a square of pixels: it lists the
-// triangles that are seen there, computes once for each of them what shading has to know, and
-// shades.
+// Computes the images from what is visible at each pixel. A block writes a square of pixels: it
+// lists the triangles that are visible there, computes the record of each once, and shades the
+// pixels.
 namespace galactic::render::cuda {
 namespace {
 
-/// One triangle of a cluster: what ClusterState has of its three corners.
+/// One triangle of a cluster: what ClusterState has for all vertices, for its three corners.
 struct TriangleState {
   std::int32_t xy[6];
   float z[3];
@@ -40,7 +40,7 @@ struct PixelRecord {
   float colors[kRecordStride];
 };
 
-/// The records of the triangle that piece `piece` of a cluster is.
+/// Writes the records of piece `piece` of a cluster.
 GALACTIC_EVERYWHERE inline void recordPiece(const PaneTask& task, const TriangleState& state,
                                             std::uint32_t piece, PixelRecord& to) {
   if (piece < kFirstLarge) {
@@ -77,22 +77,22 @@ GALACTIC_EVERYWHERE inline IntLanes shadePixel(const PaneTask& task, const float
                             Lanes(record[kLightStart])};
     color = timesLight(color, lightAt(light, pixel));
   }
-  // What is drawn hides all behind it.
+  // Whatever is drawn is opaque: its alpha is 255.
   return color | static_cast<std::int32_t>(0xFF000000U);
 }
 
-/// What images show of a pixel.
+/// What images show at a pixel.
 struct PixelImage {
   std::uint32_t color;
   std::uint32_t semantic;
 };
 
-/// The triangle that seenAt() notes: its rank and its piece.
+/// The triangle in a number of seenAt(): its rank and its piece.
 GALACTIC_EVERYWHERE inline std::uint32_t orderOfSeen(std::uint64_t seen) {
   return ~static_cast<std::uint32_t>(seen);
 }
 
-/// The record of what is seen as `order` on a pane.
+/// Writes the records of the triangle with this `order` on a pane.
 GALACTIC_EVERYWHERE inline void recordSeen(const PaneLists& lists, std::uint32_t order,
                                            PixelRecord& to) {
   const PaneTask& task = *lists.task;
@@ -106,31 +106,31 @@ GALACTIC_EVERYWHERE inline void recordSeen(const PaneLists& lists, std::uint32_t
   recordPiece(task, state, piece, to);
 }
 
-/// The semantic id alone.
+/// The semantic id of the triangle with this `order`.
 GALACTIC_EVERYWHERE inline std::uint32_t semanticSeen(const PaneLists& lists, std::uint32_t order) {
   const SeenCluster& cluster = lists.seen[lists.order[order >> kPieceBits]];
   return clusterFacts(lists.task->models[cluster.model], cluster.cluster).semantic;
 }
 
 constexpr std::uint32_t kSquarePixels = kResolveEdge * kResolveEdge;
-/// Twice as many as there can be triangles, so that searches are short.
+/// Slots of a hash table, twice as many as there can be triangles, so that searches are short.
 constexpr std::uint32_t kSlots = 2 * kSquarePixels;
 constexpr std::uint32_t kEmptySlot = 0xFFFFFFFF;
-/// Triangles whose records are kept; those of others are computed for each pixel.
+/// How many triangles have their records kept; those of the others are computed for each pixel.
 constexpr std::uint32_t kKeptRecords = 128;
 
 struct ResolveShared {
   /// By slot: the order of a triangle, and its place in the list.
   std::uint32_t orders[kSlots];
   std::uint16_t places[kSlots];
-  /// By pixel.
+  /// By pixel: the slot of its triangle.
   std::uint16_t slots[kSquarePixels];
   std::uint32_t count;
   std::uint32_t list[kKeptRecords];
   float records[kKeptRecords][kRecordStride];
 };
 
-/// The slot of a triangle, which is listed where it is new.
+/// The slot of a triangle. Lists the triangle if it is new.
 GALACTIC_EVERYWHERE inline std::uint32_t listTriangle(ResolveShared& shared, std::uint32_t order) {
   std::uint32_t slot = (order * 2654435761U) >> 23U;
   static_assert(kSlots == 1U << 9U);
@@ -177,7 +177,7 @@ GALACTIC_EVERYWHERE inline void writePixel(const PaneTask& task, std::size_t pix
   for (std::uint32_t n = 0; n < 3; ++n) to[n] = static_cast<std::uint8_t>(image.color >> (8 * n));
 }
 
-/// What is seen at a pixel; `shared` has the triangles of its square.
+/// The color and the semantic id of a pixel. `shared` has the triangles of its square.
 GALACTIC_EVERYWHERE inline PixelImage lookAtPixel(const PaneLists& lists,
                                                   const ResolveShared& shared, std::uint32_t number,
                                                   const SquarePixel& place, std::uint64_t seen) {
@@ -191,7 +191,7 @@ GALACTIC_EVERYWHERE inline PixelImage lookAtPixel(const PaneLists& lists,
   if (kept < kKeptRecords) {
     const float* record = shared.records[kept];
     if ((as<std::uint32_t>(record[kKind]) & kHasColors) == 0) {
-      // No colors are read.
+      // The second record is not read, since the triangle has no colors.
       return {static_cast<std::uint32_t>(shadePixel(task, record, record, pixel).v),
               as<std::uint32_t>(record[kSemantic])};
     }
@@ -202,7 +202,7 @@ GALACTIC_EVERYWHERE inline PixelImage lookAtPixel(const PaneLists& lists,
           as<std::uint32_t>(own.record[kSemantic])};
 }
 
-/// Lists the triangles that are seen in a square, and computes their records.
+/// Lists the triangles that are visible in a square, and computes their records.
 GALACTIC_EVERYWHERE inline void recordSquare(const Block& block, const PaneLists& lists,
                                              const std::uint64_t* pixels, std::uint32_t square,
                                              ResolveShared& shared) {
@@ -229,7 +229,7 @@ GALACTIC_EVERYWHERE inline void recordSquare(const Block& block, const PaneLists
   });
 }
 
-/// Writes the square of a pane that is the block's: `blocks_of_pane` share it.
+/// Writes the block's square of a pane, which `blocks_of_pane` blocks share.
 GALACTIC_EVERYWHERE inline void resolvePane(const Block& block, ResolveShared& shared,
                                             const ViewSlice& slice, std::uint32_t blocks_of_pane) {
   const std::uint32_t pane = block.index / blocks_of_pane;
