@@ -26,8 +26,8 @@ float across(const Vec3& a, const Vec3& b) {
   return std::sqrt(x * x + z * z);
 }
 
-/// Whether nothing of the static scene stands between a point and the place `from`, at one of two
-/// heights above the point at least.
+/// Whether a line of sight to a point from the place `from` is free of the static scene, at either
+/// of two heights above the point.
 bool isInSight(const ColumnGrid& grid, const Vec3& point, const Vec3& from) {
   // What the point lies on or in does not count as between them.
   constexpr float kNear = 0.06F;

@@ -391,7 +391,7 @@ Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   const DriverFunctions& functions = driver_->functions();
   statistics_ = {};
   slices_.clear();
-  // What it reads is about to be overwritten.
+  // A batch that is still under way reads what this one is about to overwrite.
   if (std::exchange(is_under_way_, false)) functions.synchronize(nullptr);
   if (views.empty()) return {};
   const ListSizes sizes = listSizes(views);

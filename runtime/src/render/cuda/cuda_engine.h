@@ -135,7 +135,8 @@ class CudaEngine final : public RenderEngine {
   Memory color_, depth_, semantics_;
   std::unique_ptr<SliceMemory> slice_memory_;
   std::vector<ViewRange> slices_;
-  /// Whether nobody has waited for a batch that was begun, because the device refused its context.
+  /// Whether a batch may still be running, since end() could not wait for it: the device refused
+  /// its context.
   bool is_under_way_ = false;
   std::vector<std::uint32_t> clusters_of_views_;
   std::vector<SliceCounts> read_counts_;

@@ -112,9 +112,9 @@ class CurrentDevice {
     void* context = nullptr;
     driver_.functions().pop_context(&context);
   }
-  /// Whether it worked.
+  /// Whether the context is current.
   [[nodiscard]] bool holds() const { return error_ == 0; }
-  /// What the driver said where it did not.
+  /// The driver's error if it is not.
   [[nodiscard]] Error failure() const {
     return driver_.failure(error_, "make the renderer's context current");
   }

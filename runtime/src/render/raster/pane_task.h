@@ -143,7 +143,7 @@ enum RecordField : std::uint32_t {
   kVRight,
   kVDown,
   kVStart,
-  kWRight,  ///< Of 1 / w.
+  kWRight,  ///< Change of 1 / w per pixel to the right.
   kWDown,
   kTexels,  ///< SurfaceTexels::texels; this field and the next two hold integers.
   kKind,

@@ -97,7 +97,8 @@ struct ViewSlice {
   std::uint32_t* by_bucket;
   /// The items of all panes, by pass, in no particular order.
   WorkItem* items[kPasses];
-  /// By pane: what is visible at each pixel, see seenAt(). In the blocks of the `soft` renderer.
+  /// By pane: what is visible at each pixel, see seenAt(). The pixels are in blocks, as in the
+  /// `soft` renderer.
   std::uint64_t* pixels;
   /// By pane: the least 1/w of each tile after the first pass.
   float* tile_depth;
