@@ -26,7 +26,7 @@ Result<void> checkOutputs(const BakeCommand& command, const WorldPlan& plan) {
   return checkOutputs(command, plan.assets, packs);
 }
 
-/// Where bakes that were done before are; none where nothing is remembered.
+/// The folder of the cache; none if the command wants no cache.
 std::optional<fs::path> cacheOf(const BakeCommand& command, const WorldPlan& plan) {
   if (command.many.no_cache) return std::nullopt;
   return command.many.cache.empty() ? plan.folder / ".cache" : command.many.cache;
@@ -39,11 +39,11 @@ Result<void> tryCache(const fs::path& folder) {
   return tried;
 }
 
-/// A bake may take hours: files that cannot be written are found out before it. Makes the folders
-/// of the packs and of the cache.
+/// Checks that all files can be written, before a bake that may take hours. Makes the folders of
+/// the packs and of the cache.
 Result<void> tryOutputs(const BakeCommand& command, const WorldPlan& plan) {
   const auto cache = cacheOf(command, plan);
-  // A cache elsewhere first: if it is refused, no empty folder of packs is left.
+  // Tries a cache elsewhere first, so that no empty folder of packs is left if it is refused.
   const bool is_elsewhere = !command.many.cache.empty();
   if (cache && is_elsewhere) RETURN_IF_ERROR(tryCache(*cache));
   RETURN_IF_ERROR(makeFolders(plan.folder));
@@ -52,7 +52,7 @@ Result<void> tryOutputs(const BakeCommand& command, const WorldPlan& plan) {
   return tryReport(command);
 }
 
-/// Three quarters of what the machine has.
+/// Three quarters of the machine's memory, in bytes.
 std::uint64_t mostOfMemory() {
   const auto pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
   const auto page_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
@@ -72,7 +72,7 @@ BuildOutcome buildPlanned(const BakeCommand& command, const WorldPlan& plan,
   return build(plan, options, follower, libraries);
 }
 
-/// Of the packs that would be baked and of the scenes that would be left out.
+/// What is missing for the packs that would be baked and for the scenes that would be left out.
 std::vector<LeftOut> whatIsMissing(const WorldPlan& plan, unsigned threads,
                                    BakeLibraries& libraries) {
   std::vector<LeftOut> missing = findMissing(plan, threads, libraries);
@@ -84,7 +84,7 @@ std::vector<LeftOut> whatIsMissing(const WorldPlan& plan, unsigned threads,
   return missing;
 }
 
-/// What a dry run ends with, so that a script knows before it bakes.
+/// The error that ends an incomplete dry run, so that a script notices before it bakes.
 Error incomplete(const WorldPlan& plan, const std::vector<LeftOut>& missing) {
   const LeftOut& first = missing.front();
   return {ErrorCode::kInvalidInput, plan.world.output.string(),
@@ -93,10 +93,10 @@ Error incomplete(const WorldPlan& plan, const std::vector<LeftOut>& missing) {
                       first.reasons.front())};
 }
 
-/// Makes it; `seconds`: how long planning took.
+/// Makes the world. `seconds`: how long planning took.
 int buildWorld(const BakeCommand& command, const WorldPlan& plan, BakeLibraries& libraries,
                double seconds) {
-  // Found before anything was begun.
+  // These errors were found before anything was baked.
   if (!plan.broken.empty() && !command.run.keep_going) {
     return refuse(plan.broken.front().failure.error);
   }
@@ -119,7 +119,7 @@ int buildWorld(const BakeCommand& command, const WorldPlan& plan, BakeLibraries&
   return endWith(command, outcome, reportOf(plan, outcome), exitCodeOf(outcome));
 }
 
-/// Says what would be made, and what is missing for it.
+/// Prints what would be made, and what is missing for it.
 int listWorld(const BakeCommand& command, const WorldPlan& plan, BakeLibraries& libraries,
               double seconds) {
   if (auto checked = checkOutputs(command, plan); !checked) return refuse(checked.error());
@@ -145,7 +145,7 @@ int listWorld(const BakeCommand& command, const WorldPlan& plan, BakeLibraries& 
 }  // namespace
 
 int bakeWorld(const BakeCommand& command) {
-  // Reading recipe and dataset takes longer than a small build.
+  // Timed, because reading recipe and dataset takes longer than a small build.
   double seconds = 0;
   BakeLibraries libraries;
   const auto plan = [&] {

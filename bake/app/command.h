@@ -17,26 +17,26 @@ namespace galactic::bake {
 /// How much to print.
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
-/// How the tool runs: what no pack's content depends on.
+/// How the tool runs. None of these options affects what a pack contains.
 struct ToolOptions {
   Verbosity verbosity = Verbosity::kNormal;
-  /// A file for one pack, a folder for several; empty: NAME.pack in the current folder.
+  /// A file for one pack, a folder for several. Empty: NAME.pack in the current folder.
   std::filesystem::path out{};
-  /// Threads; 0 until the command line is read: one per processor.
+  /// Number of threads. 0 until the command line has been read, which then sets one per processor.
   std::uint32_t threads = 0;
   std::filesystem::path report{};
   bool dry_run = false;
   bool keep_going = false;
 };
 
-/// How the many packs of a dataset or recipe are made.
+/// How to make the packs of a dataset or recipe.
 struct ManyPacksOptions {
-  /// Empty: beside the packs.
+  /// The cache's folder. Empty: beside the packs.
   std::filesystem::path cache{};
   bool no_cache = false;
   Shard shard{};
-  /// Bytes that bakes, and scenes in which episodes are drawn, may take at the same time; 0: 3/4 of
-  /// the machine's.
+  /// Bytes of memory that concurrent bakes, and the scenes in which episodes are drawn, may use
+  /// together. 0: 3/4 of the machine's memory.
   std::uint64_t memory = 0;
 };
 
@@ -46,58 +46,59 @@ void visitOptions(ManyPacksOptions& options, OptionVisitor& visitor);
 /// A dataset on the command line.
 struct DatasetCommand {
   DatasetJobs jobs{};
-  /// Only print the names of the scenes.
+  /// Print only the names of the scenes.
   bool list = false;
 };
 
 /// A recipe on the command line.
 struct RecipeCommand {
-  /// Where its files are looked for that are not beside it; empty: nowhere else.
+  /// The folder to search for files that are not beside the recipe. Empty: none.
   std::filesystem::path data{};
   EpisodeOverrides episodes{};
 };
 
-/// Those of them that a recipe may have, too.
+/// Visits the command-line options that a recipe may also set.
 void visitOptions(EpisodeOverrides& episodes, OptionVisitor& visitor);
 void visitOptions(DatasetCommand& command, OptionVisitor& visitor);
 void visitOptions(RecipeCommand& command, OptionVisitor& visitor);
 
-/// What the user typed, understood.
+/// The parsed command line.
 struct BakeCommand {
   std::vector<std::filesystem::path> inputs;
-  /// The file of options that was read, if any: like the inputs, nothing may replace it.
+  /// The options file that was read, if any. Like an input, it must not be overwritten.
   std::filesystem::path config;
   /// Print a draft of a recipe for the robot, and bake nothing.
   bool prints_recipe = false;
   ToolOptions run;
   ManyPacksOptions many;
-  /// The options of what is made of the inputs; its own inputs are empty.
+  /// What to make of the inputs, with its options. The inputs are in `inputs`, not in here.
   std::variant<Job, DatasetCommand, RecipeCommand> what;
 
-  /// Whether it is a recipe or a dataset, of which many packs are made.
+  /// Whether the input is a recipe or a dataset, from which many packs are made.
   [[nodiscard]] bool makesWorld() const { return !std::holds_alternative<Job>(what); }
   [[nodiscard]] bool saysMore() const { return run.verbosity >= Verbosity::kNormal; }
 };
 
-/// The command, or the exit code of a command line that needs no work: help, version, or a mistake,
-/// which has been explained on stderr.
+/// The command, or an exit code if there is nothing left to do: help or the version was printed, or
+/// a mistake was reported on stderr.
 using ParsedCommand = std::variant<BakeCommand, int>;
 
 [[nodiscard]] ParsedCommand parseCommandLine(int argc, const char* const* argv);
 
-/// The command of these arguments, the program's name not among them. Fails with kInvalidInput, and
-/// with kIo where the file of --config cannot be read.
+/// The command that `arguments` (without the program's name) stand for. Fails with kInvalidInput,
+/// and with kIo if the file of --config cannot be read.
 [[nodiscard]] Result<BakeCommand> commandFrom(const std::vector<std::string>& arguments);
 
-/// Whether it is an option of the command line that no recipe takes.
+/// Whether `name` is a command-line option that recipes do not accept.
 [[nodiscard]] bool isOfCommandLine(std::string_view name);
 
-/// The packs that a command of a single kind makes of its files: one of each, or one of all. Fails
-/// with kInvalidInput, kIo and kUnsupported on files of which no such pack can be made.
+/// The packs that a command for a single kind of pack makes from its files: one per file, or one
+/// for all of them. Fails with kInvalidInput, kIo or kUnsupported on files that such a pack cannot
+/// be made from.
 [[nodiscard]] Result<std::vector<PackJob>> packsOf(const BakeCommand& command);
 
-/// What a command that makesWorld() makes of datasets or of a recipe. Fails as jobsOfDatasets and
-/// jobsOfRecipe do.
+/// What a command with makesWorld() makes of its datasets or recipe. Fails like jobsOfDatasets and
+/// jobsOfRecipe.
 [[nodiscard]] Result<WorldPlan> planOf(const BakeCommand& command, BakeLibraries& libraries);
 
 }  // namespace galactic::bake

@@ -45,12 +45,12 @@ constexpr std::array<Named<AssetKind>, 6> kKindNames{{{"scene", AssetKind::kScen
                                                       {"dataset", AssetKind::kDataset},
                                                       {"world", AssetKind::kWorld}}};
 
-/// Options by which the tool is told something else than how to bake. What they do stands below.
+/// Options that do not control how to bake. Their help is defined below.
 constexpr std::array<std::string_view, 4> kNotInFiles{"config", "help", "print-recipe", "version"};
 
 using Target = std::variant<Job, DatasetCommand, RecipeCommand>;
 
-/// One of each.
+/// One target of each kind.
 std::vector<Target> allTargets() {
   return {Job(SceneJob{}),
           Job(ObjectJob{}),
@@ -66,7 +66,7 @@ void visitTarget(Target& target, OptionVisitor& visitor) {
   std::visit([&](auto& one) { visitOptions(one, visitor); }, target);
 }
 
-/// All options of the tool, each of which is told to `visitor` once or more.
+/// Shows all options of the tool to `visitor`, each at least once.
 void visitAll(OptionVisitor& visitor) {
   ToolOptions run;
   visitOptions(run, visitor);
@@ -77,7 +77,7 @@ void visitAll(OptionVisitor& visitor) {
 
 std::string dashed(std::string_view name) { return "--" + std::string(name); }
 
-/// Makes an option of the parser of each option that it is told.
+/// Registers each visited option with the parser.
 class Registrar final : public OptionVisitor {
  public:
   explicit Registrar(CLI::App& app) : app_(app) {}
@@ -124,7 +124,7 @@ class NameSet final : public OptionVisitor {
   std::set<std::string, std::less<>> names;
 };
 
-/// What the target is, in messages.
+/// How messages describe the target.
 std::string describe(const Target& target) {
   if (std::holds_alternative<DatasetCommand>(target)) return "--as dataset";
   if (std::holds_alternative<RecipeCommand>(target)) return "a world's recipe";
@@ -136,7 +136,7 @@ std::string describe(const Target& target) {
   return text;
 }
 
-/// The parser, and what it has found.
+/// The parser and its results.
 class CommandLine {
  public:
   CommandLine() {
@@ -165,12 +165,12 @@ class CommandLine {
   }
 
   void parse(int argc, const char* const* argv) { app_.parse(argc, argv); }
-  /// Help and version.
+  /// Prints help or the version, and returns the exit code.
   int answer(const CLI::Success& asked) { return app_.exit(asked); }
   [[nodiscard]] std::string explain(const CLI::ParseError& error) const {
     return withSuggestions(error.what(), longNames());
   }
-  /// Whether every key of a robot recipe is to be explained.
+  /// Whether to explain every key of a robot recipe.
   [[nodiscard]] bool explainsRecipe() const { return prints_recipe_ && inputs_.empty(); }
 
   Result<BakeCommand> understand() {
@@ -201,7 +201,7 @@ class CommandLine {
     return names;
   }
 
-  /// The options that were typed, but for those that are read here.
+  /// Collects the typed options, except those that this class reads itself.
   void collectTyped() {
     for (const CLI::Option* option : app_.get_options()) {
       const std::string name = option->get_name();
@@ -216,7 +216,7 @@ class CommandLine {
     }
   }
 
-  /// Adds the options of the file that are not typed.
+  /// Adds the options of the file that were not typed.
   Result<void> readConfig() {
     if (app_.count("--config") == 0) return {};
     if (config_.empty()) {
@@ -245,7 +245,7 @@ class CommandLine {
 
   static bool isPack(const std::filesystem::path& path) { return endsWithOneOf(path, {".pack"}); }
 
-  /// Whether each input ends in one of them, but for packs beside others.
+  /// Whether all inputs have one of the endings, ignoring packs, but not all are packs.
   static bool allButPacksEndWithOneOf(const std::vector<std::filesystem::path>& inputs,
                                       std::initializer_list<std::string_view> endings) {
     return !std::ranges::all_of(inputs, isPack) &&
@@ -254,7 +254,7 @@ class CommandLine {
            });
   }
 
-  /// Whether each input ends in one of them.
+  /// Whether all inputs have one of the endings.
   static bool allEndWithOneOf(const std::vector<std::filesystem::path>& inputs,
                               std::initializer_list<std::string_view> endings) {
     return std::ranges::all_of(inputs, [endings](const std::filesystem::path& path) {
@@ -262,11 +262,11 @@ class CommandLine {
     });
   }
 
-  /// What --as says, or what the inputs look like.
+  /// The kind that --as names, or else the kind that the inputs' names suggest.
   Result<AssetKind> chooseKind(const std::vector<std::filesystem::path>& inputs) {
     AssetKind kind = AssetKind::kScene;
     if (allEndWithOneOf(inputs, {".urdf", ".xml", ".mjcf"})) kind = AssetKind::kRobot;
-    // Nothing but episodes comes compressed.
+    // Only episodes come compressed.
     if (allButPacksEndWithOneOf(inputs, {kEpisodeSetSuffix, ".json.gz"})) {
       kind = AssetKind::kEpisodes;
     }
@@ -339,7 +339,7 @@ class CommandLine {
     return command.prints_recipe ? checkDraft(command, given) : Result<void>{};
   }
 
-  /// A draft is of one robot, and printed.
+  /// A draft of a recipe is for one robot, and is printed.
   static Result<void> checkDraft(const BakeCommand& command, const OptionReader& given) {
     const Job* job = std::get_if<Job>(&command.what);
     const bool is_robot = job != nullptr && std::holds_alternative<RobotJob>(*job);
@@ -377,7 +377,7 @@ bool isOfCommandLine(std::string_view name) {
     visitOptions(many, set);
     visitOptions(recipe, set);
     set.names.insert({"as", "list"});
-    // Recipes have these, too.
+    // Recipes accept these, too.
     NameSet shared;
     visitOptions(recipe.episodes, shared);
     for (const std::string& option : shared.names) set.names.erase(option);

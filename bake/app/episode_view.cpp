@@ -12,7 +12,7 @@
 namespace galactic::bake {
 namespace {
 
-/// "14 of 16; not: 2 no grasp".
+/// For example "14 of 16; not: 2 no grasp".
 std::string textOf(const SolvedSample& sample) {
   std::vector<std::string> ends;
   ends.reserve(sample.unsolved.size());

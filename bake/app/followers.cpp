@@ -21,7 +21,7 @@ std::string clockText(double seconds) {
   return fmt::format("{}:{:02}:{:02}", minutes / 60, minutes % 60, whole % 60);
 }
 
-/// Whether a part of what `job` makes is done, which the next bake goes on with.
+/// Whether an earlier bake has done part of `job`, with which the next bake continues.
 bool isBegun(const PackJob& job) { return isThere(job.output.string() + ".partial"); }
 
 }  // namespace
@@ -108,7 +108,7 @@ std::string WorldFollower::left() const {
   };
   const std::size_t begun = done_ + running_.size();
   const std::size_t waiting = count_ > begun ? count_ - begun : 0;
-  // What was found in the cache says nothing of how long the rest takes.
+  // Packs found in the cache do not show how long the rest takes.
   const double baked = static_cast<double>(baked_);
   if (fraction_ > stage_from_) {
     const double rest = since(stage_start_) / (fraction_ - stage_from_) * (1 - fraction_);

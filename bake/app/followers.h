@@ -15,8 +15,9 @@
 
 namespace galactic::bake {
 
-/// Follows the build of single files: a line of progress, and the closing table of each. The first
-/// Ctrl-C ends the program: one file may take long, and what is kept of it is kept on the way.
+/// Follows the build of single files: shows a progress line, and prints a table when each is done.
+/// The first Ctrl-C ends the program: a single file may take long, and what can be resumed is saved
+/// along the way.
 class FileFollower final : public BuildObserver {
  public:
   FileFollower(const BakeCommand& command, std::span<const PackJob> jobs);
@@ -31,17 +32,18 @@ class FileFollower final : public BuildObserver {
   ProgressLine line_;
 };
 
-/// Follows the build of many packs: on a terminal one line with an estimate of what is left,
-/// elsewhere a line for each pack that is done, and one now and then while a pack takes long. The
-/// first Ctrl-C stops it between packs.
+/// Follows the build of many packs. On a terminal, shows one line with an estimate of the time
+/// left; elsewhere, prints a line for each finished pack, and one now and then while a pack takes
+/// long. The first Ctrl-C stops the build between packs.
 class WorldFollower final : public BuildObserver {
  public:
-  /// `count`: packs that are to be made.
+  /// `count`: number of packs to make.
   WorldFollower(const BakeCommand& command, std::size_t count)
       : verbosity_(command.run.verbosity), count_(count), line_(command.saysMore()) {}
 
   void begin(std::string_view pack) override;
-  /// What is done inside a pack is shown while it is the only one at work, as episodes always are.
+  /// Shows the stage of a pack only while no other pack is being made, which is always so for
+  /// episodes.
   void show(std::string_view item, std::string_view stage, double fraction) override;
   void end(const PackOutcome& pack) override;
   [[nodiscard]] bool stops() override { return stop_.came(); }
@@ -51,11 +53,12 @@ class WorldFollower final : public BuildObserver {
 
   void forgetStage();
   void redraw();
-  /// A line that stays.
+  /// Prints a permanent line.
   void print(const std::string& line);
-  /// Where nobody sees the line that changes: one that stays, after a while without any.
+  /// Prints a permanent line if the progress line is hidden and nothing has been printed for a
+  /// while.
   void sayThatItGoesOn();
-  /// How much time is left; "?" while nobody knows.
+  /// The estimated time left; "?" while there is no estimate.
   [[nodiscard]] std::string left() const;
 
   StopRequest stop_{"galactic-bake"};
@@ -64,13 +67,13 @@ class WorldFollower final : public BuildObserver {
   std::size_t count_;
   ProgressLine line_;
   Clock::time_point start_ = Clock::now();
-  /// When the last line that stays was printed.
+  /// When the last permanent line was printed.
   Clock::time_point printed_ = start_;
   std::set<std::string, std::less<>> running_;
-  /// Of the only pack at work: what is done, and how much of it is; else nothing.
+  /// Stage of the only pack in progress and the fraction done; empty and 0 otherwise.
   std::string stage_;
   double fraction_ = 0;
-  /// When and with what it was first told.
+  /// When the stage was first reported, and with which fraction.
   Clock::time_point stage_start_;
   double stage_from_ = 0;
   std::size_t done_ = 0;

@@ -15,30 +15,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The path without dots, and without the slash at its end.
+/// The path without dots and without a trailing slash.
 fs::path wholePath(const fs::path& path) {
   std::error_code unknown;
   const fs::path whole = fs::absolute(path, unknown).lexically_normal();
   return whole.has_filename() ? whole : whole.parent_path();
 }
 
-/// Whether it is a folder, or is to be one.
+/// Whether `path` is a folder or names one that is to be made.
 bool namesFolder(const fs::path& path) { return !path.has_filename() || isFolder(path); }
 
-/// The name of the pack that is made of `input`, without its extension.
+/// The name, without extension, of the pack made from `input`.
 fs::path packName(const Job& job, const fs::path& input) {
   if (std::holds_alternative<WorldJob>(job)) return "world";
   if (std::holds_alternative<EpisodeGenerationJob>(job)) return "episodes";
   if (std::holds_alternative<EpisodeImportJob>(job)) return episodeSetName(input);
   if (!isFolder(input)) return input.stem();
-  // A dot in a folder's name begins no extension.
+  // In a folder's name, a dot does not begin an extension.
   const fs::path folder = wholePath(input);
   return folder.has_filename() ? folder.filename() : "objects";
 }
 
 bool isPack(const fs::path& input) { return input.extension() == ".pack"; }
 
-/// Gives the job these inputs: one, or all that go into one pack.
+/// Sets the inputs of a job: a single one, or all that go into one pack.
 void setInputs(Job& job, const std::vector<fs::path>& inputs) {
   struct Set {
     const std::vector<fs::path>& inputs;
@@ -60,7 +60,7 @@ bool makesOnePack(const Job& job) {
          std::holds_alternative<EpisodeGenerationJob>(job);
 }
 
-/// What a JSON file is that is given as a mesh, and what to give instead.
+/// Explains what a JSON file given as a mesh is, and what to give instead.
 std::string whatJsonIs(std::string_view file) {
   constexpr std::string_view kSceneSuffix = ".scene_instance.json";
   if (file.ends_with(kSceneSuffix)) {
@@ -83,8 +83,8 @@ std::string whatJsonIs(std::string_view file) {
   return "is no mesh but JSON; add `as` episodes if it holds published episodes";
 }
 
-/// Refuses an input of which no such job can be made, and says what its user may have meant; others
-/// are left to their reader, which knows best what is wrong.
+/// Refuses an input that does not fit the job and suggests what the user may have meant. Other
+/// faults are left to the input's reader, which knows best what is wrong.
 Result<void> checkInput(const fs::path& input, const Job& job) {
   const std::string file = input.filename().string();
   if (isFolder(input)) {
@@ -94,7 +94,7 @@ Result<void> checkInput(const fs::path& input, const Job& job) {
                 "objects, or `as` dataset to bake them as scans");
   }
   if (isPack(input)) {
-    // Published episodes get their starts in them.
+    // The starts of published episodes are drawn in packs.
     if (std::holds_alternative<EpisodeImportJob>(job)) return {};
     return fail(ErrorCode::kInvalidInput, input.string(),
                 "is a pack already; add `as` episodes to generate episodes in packs, or `as` world "
@@ -106,7 +106,7 @@ Result<void> checkInput(const fs::path& input, const Job& job) {
   return fail(ErrorCode::kUnsupported, input.string(), whatJsonIs(file));
 }
 
-/// Packs are inputs of episodes and worlds alone.
+/// Only episodes and worlds have packs as inputs.
 Result<void> checkInputs(const BakeCommand& command, const Job& job) {
   if (std::holds_alternative<WorldJob>(job) || std::holds_alternative<EpisodeGenerationJob>(job)) {
     return {};
@@ -119,7 +119,7 @@ std::vector<PackJob> packsOfFiles(const BakeCommand& command, const Job& job) {
   std::vector<PackJob> packs;
   const fs::path& out = command.run.out;
   std::vector<fs::path> inputs = command.inputs;
-  // Packs beside published episodes are for all of these.
+  // Packs given with files of published episodes apply to all of these files.
   std::vector<fs::path> shared;
   if (std::holds_alternative<EpisodeImportJob>(job)) {
     const auto first = std::stable_partition(inputs.begin(), inputs.end(), std::not_fn(isPack));
@@ -145,7 +145,7 @@ std::vector<PackJob> packsOfFiles(const BakeCommand& command, const Job& job) {
   return packs;
 }
 
-/// "home" of home.scene_dataset_config.json, of home.toml and of the folder home.
+/// For example "home" for home.scene_dataset_config.json, home.toml and the folder home.
 std::string worldName(const fs::path& input) {
   const fs::path whole = wholePath(input);
   std::string name = whole.filename().string();
@@ -154,7 +154,7 @@ std::string worldName(const fs::path& input) {
   return name.substr(0, name.size() - kDatasetSuffix.size());
 }
 
-/// NAME.pack, in the folder or under the name that the command gives.
+/// NAME.pack in the folder, or the file name, that the command gives.
 fs::path worldPack(const BakeCommand& command) {
   const fs::path& out = command.run.out;
   return namesFolder(out) ? out / (worldName(command.inputs.front()) + ".pack") : out;

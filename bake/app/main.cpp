@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A bake may take hours: files that cannot be written are found out before it. Makes the folders
-/// of the packs.
+/// Checks that all files can be written, before a bake that may take hours. Makes the folders of
+/// the packs.
 Result<void> tryOutputs(const BakeCommand& command, const std::vector<fs::path>& packs) {
   for (const fs::path& pack : packs) {
     if (command.run.dry_run) break;
@@ -31,7 +31,7 @@ Result<void> tryOutputs(const BakeCommand& command, const std::vector<fs::path>&
   return tryReport(command);
 }
 
-/// Makes the packs of single files. The exit code.
+/// Makes the packs of single files. Returns the exit code.
 int bakeFiles(const BakeCommand& command) {
   const auto jobs = packsOf(command);
   if (!jobs) return refuse(jobs.error());
@@ -62,7 +62,7 @@ int printSceneNames(const BakeCommand& command, DatasetJobs dataset) {
 int printRecipeDraft(const BakeCommand& command) {
   auto job = std::get<RobotJob>(std::get<Job>(command.what));
   job.input = command.inputs.front();
-  // A draft is of links and joints, whether or not their meshes are there.
+  // A draft lists links and joints, so missing meshes do not matter.
   job.allow_missing = true;
   const auto robot = readRobotFile(job);
   if (!robot) return refuse(robot.error());

@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the command and its jobs name: whatever else they read is known when they have.
+/// The files that the command and its jobs name. Other files that a bake reads are only known after
+/// it.
 ReadLog namedFiles(const BakeCommand& command, std::span<const PackJob> jobs) {
   ReadLog named;
   for (const fs::path& input : command.inputs) named.noteRead(input);
@@ -25,7 +26,7 @@ ReadLog namedFiles(const BakeCommand& command, std::span<const PackJob> jobs) {
   return named;
 }
 
-/// Whatever name it goes by, the report is none of the packs.
+/// Checks that the report is not one of the packs, under any name.
 Result<void> checkReport(const fs::path& report, const OutputPacks& packs) {
   if (report.empty()) return {};
   const auto is_report = [&](const fs::path& pack) { return isSameFile(pack, report); };

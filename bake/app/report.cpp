@@ -18,7 +18,7 @@
 namespace galactic::bake {
 namespace {
 
-/// An object that begins with this member.
+/// An object that begins with the member `key`, followed by those of `rest`.
 Json named(const char* key, std::string value, const Json& rest) {
   Json json{{key, std::move(value)}};
   json.update(rest);
@@ -35,8 +35,8 @@ Json errorOf(const BakeFailure& failure) {
           {"message", withFlags(failure.error.message)}};
 }
 
-/// The options of a job that have a value, by name: numbers and switches as such, files without
-/// their folders, and a list where there are several values.
+/// The options of a job that have a value, by name. Numbers and switches keep their types, files
+/// lose their folders, and several values become a list.
 class OptionValues final : public OptionVisitor {
  public:
   using OptionVisitor::option;
@@ -63,17 +63,17 @@ class OptionValues final : public OptionVisitor {
   }
 };
 
-/// What was asked of a pack.
+/// The kind and options requested for a pack.
 Json askedOf(Job job) {
   OptionValues values;
   visitOptions(job, values);
   return {{"as", kindOf(job)}, {"options", std::move(values.json)}};
 }
 
-/// What every report begins with.
+/// The members at the beginning of every report.
 Json reportHead() { return {{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}}; }
 
-/// How this run came to it.
+/// How this run made the pack.
 Json progressOf(const PackOutcome& pack) {
   Json json{{"pack", pack.name}, {"state", nameOf(pack.state)}, {"seconds", pack.seconds}};
   if (!pack.warnings.empty()) json["warnings"] = withFlags(pack.warnings);
@@ -88,7 +88,7 @@ Json scenesOf(const std::vector<LeftOut>& scenes) {
   return json;
 }
 
-/// What was asked of the world's packs, what was baked now or before, and what failed.
+/// Adds what was requested for the world's packs, what was baked now or earlier, and what failed.
 void addPacks(const WorldPlan& plan, const BuildOutcome& outcome, Json& json) {
   json["jobs"] = Json::array();
   for (const PackJob& pack : plan.assets) {
@@ -102,7 +102,7 @@ void addPacks(const WorldPlan& plan, const BuildOutcome& outcome, Json& json) {
   for (const PackOutcome& pack : outcome.packs) {
     for (const Json& entry : pack.figures ? entriesOf(*pack.figures) : Json::array()) {
       Json one = named("pack", pack.name, entry);
-      // What is kept of it may have been made for another folder.
+      // A cached entry may have been made for another folder.
       one["output"] = (plan.folder / pack.name).string();
       json["baked"].push_back(std::move(one));
     }
@@ -120,7 +120,7 @@ Json runOf(const BuildOutcome& outcome) {
   return run;
 }
 
-/// Sentences, and of which packs they are said: many scenes lack the same things.
+/// Sentences and the packs that they apply to, as many scenes lack the same things.
 using Sentences = std::map<std::string, std::vector<std::string>>;
 
 Sentences warningsOf(const BuildOutcome& outcome) {
@@ -149,7 +149,8 @@ void print(const Sentences& sentences) {
   }
 }
 
-/// The episodes that were made, now or before: what was drawn, and whether they can be solved.
+/// Prints the episodes that were made, now or earlier: what was drawn, and whether they can be
+/// solved.
 void printEpisodes(const BuildOutcome& outcome, Verbosity verbosity) {
   for (const PackOutcome& pack : outcome.packs) {
     if (!pack.figures) continue;
@@ -210,7 +211,7 @@ Json reportOf(const WorldPlan& plan, const BuildOutcome& outcome) {
   addPacks(plan, outcome, json);
   json["left_out"] = scenesOf(plan.left_out);
   json["warnings"] = withFlags(plan.warnings);
-  // Not where there are none: reports of before stay as they were.
+  // Left out if there are none, so that reports of worlds without a task stay the same.
   for (const OptionText& option : std::get<WorldJob>(plan.world.job).task) {
     json["task"][option.name] = option.value;
   }

@@ -14,21 +14,21 @@ using Json = OrderedJson;
 
 [[nodiscard]] const char* nameOf(PackState state);
 
-/// What was asked of each pack, what was baked and what failed.
+/// For each pack what was requested, what was baked and what failed.
 [[nodiscard]] Json reportOf(std::span<const PackJob> packs, const BuildOutcome& outcome);
-/// The same of a world, with what was left out and what the world lists. The member "run" says how
-/// the run went; nothing else depends on what was baked before.
+/// The same for a world, with what was left out and what the world lists. Only the member "run",
+/// which describes the run, depends on what had been baked before.
 [[nodiscard]] Json reportOf(const WorldPlan& plan, const BuildOutcome& outcome);
 
 /// Writes a report, atomically.
 [[nodiscard]] Result<void> writeReport(const std::filesystem::path& path, const Json& report);
 
-/// What was made of a dataset or recipe, what is left out, and warnings, for people.
+/// Prints what was made of a dataset or recipe, what was left out, and warnings.
 void printWorldTable(const WorldPlan& plan, const BuildOutcome& outcome, Verbosity verbosity);
 
-/// What is missing, for people.
+/// Prints what is missing.
 void printMissing(const std::vector<LeftOut>& missing);
-/// The same for programs.
+/// The same as JSON.
 [[nodiscard]] Json missingReport(const std::vector<LeftOut>& missing);
 
 }  // namespace galactic::bake

@@ -10,7 +10,7 @@
 namespace galactic::bake {
 namespace {
 
-/// By Region.
+/// Indexed by Region.
 constexpr std::array<const char*, kRegionCount> kRegionNames{"room", "outside", "enclosed"};
 
 std::string castCheckText(const GridFigures& grid) {
@@ -20,7 +20,7 @@ std::string castCheckText(const GridFigures& grid) {
   return counted(check.columns, "column") + " checked, none wrong";
 }
 
-/// Where casts and grid differ although the grid is right: docs/column_grids.md.
+/// Differences between casts and grid where the grid is right; see docs/column_grids.md.
 std::string castDifferences(const GridFigures& grid) {
   if (!grid.cast_check) return {};
   const CastCheck& check = *grid.cast_check;

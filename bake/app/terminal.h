@@ -8,37 +8,36 @@
 
 namespace galactic::bake {
 
-/// A message of the library, whose `option` in backquotes becomes --option; other words in
-/// backquotes stay as they are.
+/// A message of the library with each `option` in backquotes turned into --option. Other words in
+/// backquotes are left alone.
 [[nodiscard]] std::string withFlags(std::string_view message);
 [[nodiscard]] std::vector<std::string> withFlags(std::vector<std::string> messages);
 
-/// Where an error is: the file and in it the option that the library names, or an option alone,
-/// with flags.
+/// Where an error is: the file and the option in it that the library names, or only an option.
+/// Options are written as flags.
 [[nodiscard]] std::string placeOf(const Error& error);
 
-/// One line on stderr: program, place, message, with flags.
+/// Prints one line to stderr: program, place and message, with options written as flags.
 void printError(const Error& error);
 
-/// The same; the exit code.
+/// Prints the error and returns its exit code.
 [[nodiscard]] int refuse(const Error& error);
 
-/// The same of all that failed in a pack.
+/// Prints all failures of a pack.
 void printFailures(const PackOutcome& pack);
 
-/// One line for each warning, or for many of a kind (the same sentence but for names in quotes and
-/// numbers) the first of them and how many more there are; all of them where `verbosity` is
-/// kVerbose. In the order of the first of each kind.
+/// One line per warning. Of many that differ only in quoted names and numbers, just the first, with
+/// the number of others, unless `verbosity` is kVerbose. Ordered by the first of each kind.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<std::string>& warnings,
                                                     Verbosity verbosity);
 
-/// Prints these lines to stdout.
+/// Prints the lines of warningLines() to stdout.
 void printWarnings(const std::vector<std::string>& warnings, Verbosity verbosity);
 
-/// One line on a terminal that says what is being done; silent elsewhere.
+/// A line on a terminal that shows the progress; prints nothing elsewhere.
 class ProgressLine {
  public:
-  /// `wanted` is what the user asked for; a line appears only if stderr is also a terminal.
+  /// `wanted`: whether the user wants the line. It appears only if stderr is a terminal, too.
   explicit ProgressLine(bool wanted);
   ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
@@ -48,7 +47,7 @@ class ProgressLine {
 
   /// Replaces the line. `fraction` from 0 to 1.
   void show(std::string_view item, std::string_view stage, double fraction);
-  /// Removes the line, so that other output begins on a clean one.
+  /// Removes the line, so that other output starts on an empty one.
   void clear();
 
  private:

@@ -14,7 +14,7 @@ std::span<const std::byte> memoryOf(const T& field) {
   return std::as_bytes(std::span(&field, 1));
 }
 
-/// What is typed, as one text; empty where it is none.
+/// The given value if it is a single text; empty otherwise.
 std::string typedText(std::span<const GivenValue> given) {
   const auto& words = given.front().words;
   const auto* text = words.size() == 1 ? std::get_if<std::string>(&words.front()) : nullptr;
@@ -26,7 +26,7 @@ bool parseWhole(std::string_view text, std::size_t& number) {
   return problem == std::errc() && end == text.data() + text.size();
 }
 
-/// "2/8": the second of eight.
+/// A field such as "2/8": the second of eight shards.
 class ShardField final : public OptionField {
  public:
   explicit ShardField(Shard& field) : field_(field) {}
@@ -53,7 +53,7 @@ class ShardField final : public OptionField {
   Shard& field_;
 };
 
-/// A number of GiB, kept as bytes.
+/// A number of GiB, stored in bytes.
 class GibibyteField final : public OptionField {
  public:
   explicit GibibyteField(std::uint64_t& field) : field_(field) {}
@@ -76,7 +76,7 @@ class GibibyteField final : public OptionField {
   std::uint64_t& field_;
 };
 
-/// A switch that sets how much is printed.
+/// A switch that sets the verbosity.
 class VerbosityField final : public OptionField {
  public:
   VerbosityField(Verbosity& field, Verbosity when_typed) : field_(field), when_typed_(when_typed) {}

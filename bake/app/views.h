@@ -8,12 +8,12 @@
 
 namespace galactic::bake {
 
-// What became of a pack, for people. report.h has it for programs.
+// Prints for people what became of a pack. report.h does so for programs.
 
-/// Prints what was baked: the figures of the kind, warnings, seconds.
+/// Prints what was baked: the figures for its kind, warnings and seconds.
 void printTable(const PackFigures& pack, Verbosity verbosity);
 
-// The same of each kind.
+// The same for each kind.
 
 void printTable(const SceneFigures& scene, const PackFigures& pack, Verbosity verbosity);
 void printTable(const ObjectSetFigures& set, const PackFigures& pack, Verbosity verbosity);
@@ -21,23 +21,23 @@ void printTable(const RobotFigures& robot, const PackFigures& pack, Verbosity ve
 void printTable(const EpisodeFigures& set, const PackFigures& pack, Verbosity verbosity);
 void printTable(const WorldFigures& world, const PackFigures& pack, Verbosity verbosity);
 
-/// What a set of episodes holds and, if it was generated, how: the middle of its table.
+/// Prints the middle part of the table: what a set of episodes holds and, if it was generated, how.
 void printEpisodes(const EpisodeFigures& set, Verbosity verbosity);
 
-// Parts of several kinds.
+// Parts that several kinds share.
 
 /// Where the pack was written, or that it was not.
 [[nodiscard]] std::string targetOf(const PackFigures& pack);
 
-/// Two lines: triangles, clusters and bytes before and after; textures. Nothing where there is
-/// none.
+/// Prints two lines: triangles, clusters and bytes before and after; textures. Prints nothing if
+/// there are no render meshes.
 void printRenderMeshes(const std::optional<RenderFigures>& meshes);
-/// The same of many assets together.
+/// The same for many assets together.
 void printRenderMeshes(const RenderBakeStatistics& figures, std::uint64_t textures);
 
-/// Spheres of each radius, largest radius first, as "2+5+0".
+/// The number of spheres of each radius, largest radius first, such as "2+5+0".
 [[nodiscard]] std::string sphereCounts(const SphereFigures& spheres);
-/// A length's mean, 95th percentile and maximum in millimeters.
+/// The mean, 95th percentile and maximum of lengths, in millimeters.
 [[nodiscard]] std::string millimeters(const LengthStatistics& lengths);
 
 }  // namespace galactic::bake
