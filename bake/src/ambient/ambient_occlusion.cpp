@@ -16,9 +16,10 @@ namespace galactic::bake {
 namespace {
 
 constexpr unsigned kMostRays = 65536;
-/// Rays start this far off their triangle: beyond the rounding of float coordinates in a home.
+/// Rays start this far off their triangle, which is more than the rounding of float coordinates in
+/// a home. Meters.
 constexpr double kLift = 1e-4;
-/// Vertices that one thread takes at a time.
+/// Number of vertices that a thread takes at a time.
 constexpr std::size_t kChunk = 256;
 
 Result<void> checkOptions(const AmbientOcclusionOptions& options) {
@@ -71,7 +72,7 @@ Result<TriangleRays> allOccluders(std::span<const OccludingMesh> meshes, unsigne
 
 using Vector = std::array<double, 3>;
 
-/// Two axes that make a right-handed frame with `n`, a unit vector (Duff et al., "Building an
+/// Two axes that form a right-handed frame with the unit vector `n` (Duff et al., "Building an
 /// Orthonormal Basis, Revisited", 2017).
 std::array<Vector, 2> tangents(const Vector& n) {
   const double sign = std::copysign(1.0, n[2]);
@@ -81,15 +82,15 @@ std::array<Vector, 2> tangents(const Vector& n) {
           Vector{b, sign + n[1] * n[1] * a, -n[1]}};
 }
 
-/// Rays from the triangles around the vertices of one mesh.
+/// Makes the rays that start on the triangles around the vertices of one mesh.
 class RayMaker {
  public:
   RayMaker(const OccludingMesh& mesh, std::span<const PatternRay> pattern,
            const AmbientOcclusionOptions& options)
       : mesh_(mesh), pattern_(pattern), options_(options), fans_(mesh.positions, mesh.triangles) {}
 
-  /// The rays of a vertex, from its triangles' fronts (`side` 1) or backs (-1); none where it has
-  /// no triangle of some area.
+  /// Makes the rays of a vertex, which start at the fronts (`side` 1) or backs (-1) of its
+  /// triangles; none if the triangles have no area.
   void make(std::size_t vertex, double side, std::vector<Ray>& rays) const {
     rays.clear();
     const std::span<const FanTriangle> fan = fans_.of(vertex);
@@ -142,7 +143,7 @@ class RayMaker {
   VertexFans fans_;
 };
 
-/// Part of the rays from one side of a vertex that meet nothing.
+/// The share of the rays that hit nothing; 1 without rays.
 float openPart(const TriangleRays& occluders, std::span<const Ray> rays) {
   if (rays.empty()) return 1;
   const auto open = std::count_if(rays.begin(), rays.end(),

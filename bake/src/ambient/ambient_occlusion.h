@@ -9,59 +9,60 @@
 
 namespace galactic::bake {
 
-/// From which sides light on a mesh is wanted.
+/// On which sides of a mesh to compute the light.
 enum class LitSides : std::uint8_t {
-  kNone,   ///< It only keeps light away.
-  kFront,  ///< Where it is seen from the front alone.
+  kNone,   ///< None: the mesh only occludes.
+  kFront,  ///< Only the front is seen.
   kBoth
 };
 
-/// A mesh in the world: what light is kept away from, and what keeps it away.
+/// A mesh in the world frame that occludes and may be lit.
 struct OccludingMesh {
   std::span<const Vec3> positions;
-  /// Corners in range of `positions`.
+  /// Indices into `positions`.
   std::span<const Triangle> triangles;
   LitSides lit = LitSides::kFront;
 };
 
 struct AmbientOcclusionOptions {
-  /// For each vertex (and side), 1 to 65,536. In a cluttered room factors from 128 rays are off by
-  /// 0.025 (root mean square), from 1,024 by 0.007.
+  /// Rays per vertex (and side), 1 to 65,536. In a cluttered room, the root mean square error of
+  /// the factors is 0.025 with 128 rays and 0.007 with 1,024.
   unsigned rays = 128;
-  /// Backs are measured where the front's factor is smaller, 0 to 1.
+  /// The back is measured where the front's factor is below this, 0 to 1.
   float dim = 0.25F;
-  /// What is nearer keeps no light away: surfaces that were simplified may pass through each other.
-  /// Meters, 0 or more, less than `largest_distance`.
+  /// Nearer surfaces do not occlude, because simplified surfaces may intersect each other. Meters,
+  /// 0 or more, less than `largest_distance`.
   float least_distance = 0;
-  /// What is farther away keeps no light away. Meters, > 0.
+  /// Farther surfaces do not occlude. Meters, > 0.
   float largest_distance = 1;
 };
 
-/// Factors of light at a vertex, 0 (dark) to 1 (open).
+/// Light factors at a vertex, 0 (dark) to 1 (open).
 struct Openness {
   float front = 1;
-  /// Where it was measured, else 0.
+  /// 0 where it was not measured.
   float back = 0;
 
   friend bool operator==(const Openness&, const Openness&) = default;
 };
 
-/// How much of the light that comes evenly from all sides reaches each vertex: for each mesh and
-/// vertex factors in linear light. None for meshes that are not lit.
+/// How much of a uniform light from all sides reaches each vertex: factors in linear light for each
+/// vertex of each mesh; none for meshes that are not lit.
 ///
-/// The factor is a mean over the triangles around the vertex, weighted with its share (barycentric
-/// coordinate) in them, of the part of cosine-weighted rays that meet nothing. So in a coarse mesh
-/// the colors are right on average, where values at the vertices themselves would paint the
-/// corners' darkness over whole walls (after Kavan, Bargteil and Sloan, "Least Squares Vertex
-/// Baking", 2011, with lumped weights). Vertices at one place whose normals differ by less than 30
-/// degrees share their triangles: no seams. Details smaller than the triangles blur.
+/// The factor is the share of cosine-weighted rays that hit nothing, averaged over the triangles
+/// around the vertex and weighted by its barycentric coordinate. In a coarse mesh the colors are
+/// thus right on average, whereas values at the vertices themselves would spread the darkness of
+/// corners over whole walls (after Kavan, Bargteil and Sloan, "Least Squares Vertex Baking", 2011,
+/// with lumped weights). A vertex also counts the triangles of other vertices at its position if
+/// their normals are less than 30 degrees from its own, which avoids seams. Details smaller than
+/// the triangles blur.
 ///
-/// Triangles occlude from both sides and wholly, whatever their material. A vertex without a
-/// triangle of some area gets 1.
+/// Triangles occlude fully and from both sides, whatever their material. A vertex gets 1 if its
+/// triangles have no area.
 ///
-/// Deterministic: fixed directions (Hammersley points), and Embree's instructions pinned. Fails
-/// with kInvalidInput when an option is out of range, kInternal when Embree does. Thread-safe. The
-/// result does not depend on `threads`.
+/// Deterministic: the directions (Hammersley points) and Embree's instruction set are fixed. Fails
+/// with kInvalidInput if an option is out of range, and with kUnsupported if memory runs out.
+/// Thread-safe. The result does not depend on `threads`.
 [[nodiscard]] Result<std::vector<std::vector<Openness>>> ambientOcclusion(
     std::span<const OccludingMesh> meshes, const AmbientOcclusionOptions& options,
     unsigned threads = 1);

@@ -6,7 +6,7 @@
 namespace galactic::bake {
 namespace {
 
-/// The digits of `index` in `base`, mirrored at the point: 0 to 1.
+/// The digits of `index` in `base`, mirrored at the radix point: 0 to 1.
 double radicalInverse(unsigned index, unsigned base) {
   double value = 0;
   double digit = 1;
@@ -23,12 +23,13 @@ std::vector<PatternRay> rayPattern(unsigned count) {
   std::vector<PatternRay> pattern;
   pattern.reserve(count);
   for (unsigned i = 0; i < count; ++i) {
-    // The evenest coordinates for the direction, which matters most.
+    // The direction matters most, so it gets the most evenly distributed coordinates.
     const double height = (i + 0.5) / count;
     const double turn = radicalInverse(i, 2);
     PatternRay ray;
     ray.triangle = radicalInverse(i, 3);
-    // Inverse of 3 x^2 - 2 x^3: the share of one corner where the density grows with it.
+    // The inverse of 3 x^2 - 2 x^3, the distribution function of a barycentric coordinate whose
+    // density is proportional to it.
     ray.own = 0.5 - std::sin(std::asin(1 - 2 * radicalInverse(i, 5)) / 3);
     ray.next = (1 - ray.own) * radicalInverse(i, 7);
     const double radius = std::sqrt(height);

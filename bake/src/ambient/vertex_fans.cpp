@@ -10,7 +10,7 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-constexpr double kCosineOfSmoothness = 0.8660254037844387;  // of 30 degrees
+constexpr double kCosineOfSmoothness = 0.8660254037844387;  // cosine of 30 degrees
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -20,20 +20,20 @@ Vector difference(const Vec3& a, const Vec3& b) {
           static_cast<double>(a.z) - static_cast<double>(b.z)};
 }
 
-/// Equal for equal places (0 and -0 are one), with an order.
+/// An ordered key that is equal for equal positions (0 equals -0).
 std::array<std::uint32_t, 3> placeKey(const Vec3& p) {
   return {std::bit_cast<std::uint32_t>(p.x + 0.F), std::bit_cast<std::uint32_t>(p.y + 0.F),
           std::bit_cast<std::uint32_t>(p.z + 0.F)};
 }
 
-/// A corner of a triangle: which vertex, where.
+/// A corner of a triangle, with its vertex and position.
 struct Corner {
   std::array<std::uint32_t, 3> place{};
   std::uint32_t vertex = 0;
   FanTriangle triangle;
 };
 
-/// Corners of triangles that have an area, sorted by place, then by triangle.
+/// The corners of triangles with nonzero area, sorted by position, then by triangle.
 std::vector<Corner> sortedCorners(std::span<const Vec3> positions,
                                   std::span<const Triangle> triangles,
                                   std::span<const double> areas) {

@@ -12,13 +12,13 @@ namespace galactic::bake {
 /// A triangle as one of its corners sees it.
 struct FanTriangle {
   std::uint32_t triangle = 0;
-  /// Which corner of it the vertex is, 0 to 2.
+  /// Which corner of the triangle the vertex is, 0 to 2.
   std::uint32_t corner = 0;
 };
 
-/// For each vertex of a mesh the triangles that count for it: its own, and those of vertices at the
-/// same place that face less than 30 degrees away from its own normal. Ascending; without triangles
-/// that have no area.
+/// For each vertex of a mesh, the triangles that count for it: its own, and those of other vertices
+/// at the same position whose normals are less than 30 degrees from the vertex's own. Ascending,
+/// without triangles of zero area.
 class VertexFans {
  public:
   /// `triangles` index `positions`; positions that no triangle uses may be anything.
@@ -27,7 +27,7 @@ class VertexFans {
   [[nodiscard]] std::span<const FanTriangle> of(std::size_t vertex) const {
     return std::span(entries_).subspan(begins_[vertex], begins_[vertex + 1] - begins_[vertex]);
   }
-  /// Unit normal and area (square meters; 0 for a triangle without area).
+  /// Unit normal of a triangle; area() is in square meters, 0 for a degenerate triangle.
   [[nodiscard]] const std::array<double, 3>& normal(std::size_t triangle) const {
     return normals_[triangle];
   }

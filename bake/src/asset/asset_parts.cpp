@@ -33,7 +33,7 @@ Result<OptionalMeshes> drawFrom(Result<RenderSource> source, const DrawOptions& 
   return OptionalMeshes(std::move(*meshes));
 }
 
-/// Where the spheres of the smallest radius are: there is most of the room for them.
+/// The rooms for the smallest radius, which leaves the most free space.
 std::vector<Bounds> roomsOf(const BakedScene& baked) {
   std::vector<Bounds> rooms;
   for (const Component& part : baked.grids.front().components) {
@@ -50,7 +50,7 @@ std::string inFile(const fs::path& file, const std::string& where) {
 
 Error errorOfExceptionAt(const fs::path& input) {
   Error error = errorOfException();
-  // Of a file that cannot be read or written, the place is that file.
+  // An error about a file that cannot be read or written already names that file.
   if (error.code != ErrorCode::kIo) error.where = inFile(input, error.where);
   return error;
 }
@@ -83,7 +83,7 @@ Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const Sou
 Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
                                  BakedScene& baked, const BakeContext& context) {
   if (!options.wanted) return std::nullopt;
-  // Scenes that share no textures would only fill the library.
+  // The library would only fill up with the images of scenes that share no textures.
   TextureLibrary* const images =
       options.shared_textures.empty() ? nullptr : &context.libraries.images();
   auto source =
@@ -117,11 +117,12 @@ Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options
   materials.shared = true;
   if (context.dry_run) return {};
   RETURN_IF_ERROR(makeFolders(folder));
-  // What a texture looks like says nothing of the asset that it was met in.
+  // A shared texture must not depend on the asset in which it was found.
   Provenance provenance = provenanceOf(SceneJob{}, {}, {});
   provenance.options.clear();
   for (const BakedTexture& texture : materials.textures) {
-    // Its source is the first asset that shows it, which may differ: a name of its own.
+    // The texture's name comes from the first asset that shows it, which may differ from run to
+    // run, so it is replaced by the hash of its content.
     BakedTexture named = texture;
     named.name = textureHash(texture);
     const fs::path pack = folder / (named.name + ".pack");

@@ -15,17 +15,17 @@
 
 namespace galactic::bake {
 
-// What the bakes of whole assets have in common.
+// What the bakes of whole assets share.
 
-/// The place of an error in `file`, from the place that a baker named, which knows no files: an
+/// The place of an error in `file`. `where` comes from a baker, which does not know the file: an
 /// option in backquotes, an element, or nothing.
 [[nodiscard]] std::string inFile(const std::filesystem::path& file, const std::string& where);
 
-/// What is said of the exception that is being handled, which ended the work on `input`: that
-/// memory ran out, that a reader was killed, or a bug. Called in a catch block.
+/// The error for the exception being handled, which ended the work on `input`: memory ran out, a
+/// reader was killed, or a bug. Call it in a catch block.
 [[nodiscard]] Error errorOfExceptionAt(const std::filesystem::path& input);
 
-/// What `bake` makes, whose Outcome says how long that took.
+/// Calls `bake` and stores in its Outcome how long that took.
 template <class Outcome, class Bake>
 [[nodiscard]] Result<BakedPack> timed(const Bake& bake) {
   double seconds = 0;
@@ -41,18 +41,20 @@ template <class Outcome, class Bake>
 [[nodiscard]] Result<void> addSources(const std::vector<std::filesystem::path>& files,
                                       std::vector<SourceFile>& sources);
 
-/// What a long bake has done, in OUTPUT.partial until the pack is written; null where nothing is
-/// written, or where no file can have so long a name. All that decides what comes out: the options
-/// of `job`, the content of `files`, and this program, of which another build may bake other bytes.
+/// Opens the journal of a long bake, which is kept in OUTPUT.partial until the pack is written.
+/// Null for a dry run, or if that file name would be too long. The journal is only valid for the
+/// same options of `job`, content of `files` and build of this program, because these decide the
+/// result.
 [[nodiscard]] Result<std::unique_ptr<Journal>> openJournal(const Job& job,
                                                            std::span<const SourceFile> files,
                                                            const BakeContext& context);
 
-/// Render meshes of one asset, or none where none are wanted.
+/// Render meshes of one asset; none if they are not wanted.
 using OptionalMeshes = std::optional<BakedRenderMeshes>;
 
-/// Bake what is drawn of an asset that was read from `input`, and add the warnings. Errors name the
-/// input. Of a scene the grids of `baked` tell where its room is, and the warnings are added there.
+/// Bake the render meshes of an asset that was read from `input`, and add the warnings. Errors name
+/// the input. For a scene, the grids of `baked` show where its rooms are, and `baked` receives the
+/// warnings.
 [[nodiscard]] Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
                                                BakedScene& baked, const BakeContext& context);
 [[nodiscard]] Result<OptionalMeshes> drawObject(const SourceAsset& object,
@@ -60,13 +62,13 @@ using OptionalMeshes = std::optional<BakedRenderMeshes>;
                                                 const std::filesystem::path& input,
                                                 std::vector<std::string>& warnings,
                                                 const BakeContext& context);
-/// Links are lit in the start pose of `baked`, to which the warnings are added.
+/// Links are lit in the start pose of `baked`, which receives the warnings.
 [[nodiscard]] Result<OptionalMeshes> drawRobot(const SourceRobot& robot, const DrawOptions& options,
                                                const std::filesystem::path& input,
                                                BakedRobot& baked, const BakeContext& context);
 
-/// Where `options` share textures between packs, writes those of `materials` that are not there
-/// yet, each into a pack named by its content, and leaves their texels out of the asset's own pack.
+/// If `options` share textures between packs, writes each texture of `materials` that does not
+/// exist yet to a pack named after its content, and leaves the texels out of the asset's own pack.
 [[nodiscard]] Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options,
                                          const BakeContext& context);
 

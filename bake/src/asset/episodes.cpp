@@ -25,7 +25,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Writes what the outcome holds.
+/// Writes the episodes of the outcome.
 Result<BakedPack> finish(EpisodeOutcome outcome, const Job& job, std::vector<SourceFile> sources,
                          const BakeContext& context) {
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
@@ -62,7 +62,7 @@ Result<OpenPacks> openPacks(const std::vector<std::filesystem::path>& inputs) {
   return opened;
 }
 
-/// Sees that each mesh of `geometry` is for one of the scenes, and describes it.
+/// Checks that each mesh of `geometry` belongs to one of the scenes, and adds it to the sources.
 Result<void> addGeometry(const EpisodeGenerationJob& job, ReadLog& log, OpenPacks& opened) {
   std::set<std::string, std::less<>> names;
   for (const PackFile& pack : opened.packs) {
@@ -82,9 +82,9 @@ Result<void> addGeometry(const EpisodeGenerationJob& job, ReadLog& log, OpenPack
   return {};
 }
 
-/// Of a scene that is made in the same build, the triangles and receptacles, read again from what
-/// its pack is made of: the pack holds neither, and may come from the cache. Of others, the mesh of
-/// `geometry`; nothing where there is none.
+/// For a scene that is made in the same build, the triangles and receptacles, which are read again
+/// from the sources of its pack: the pack holds neither, and may come from the cache. For others,
+/// the mesh of `geometry`, or nothing if there is none.
 Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_view scene,
                                  BakeLibraries& libraries) {
   const std::string name(scene);
@@ -96,11 +96,12 @@ Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_vi
   return readSceneDetails({.input = file->second}, libraries);
 }
 
-/// `files`: sorted. What only scenes know decides, too, and stands in the records.
+/// `files` must be sorted. The result also depends on what is only known per scene; the journal's
+/// records hold that.
 Result<std::unique_ptr<Journal>> openJournal(EpisodeGenerationJob job,
                                              std::span<const SourceFile> files,
                                              const BakeContext& context) {
-  // What they decide comes after the drawing.
+  // These options only take effect after the episodes are drawn.
   job.solve = 0;
   job.generate.most_skipped = 0;
   return openJournal(Job(std::move(job)), files, context);
@@ -116,11 +117,11 @@ Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const Episod
   return generateEpisodes(inputs, job.generate, show);
 }
 
-/// Generates them, lets a sample of them be played, and writes them.
+/// Generates episodes, lets a sample of them be solved, and writes them.
 Result<BakedPack> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,
                                std::vector<SourceFile> files, const BakeContext& context) {
   ASSIGN_OR_RETURN(auto generated, generate(job, inputs, context));
-  // As one that is exported and imported again is called.
+  // The same name that an exported set gets when it is imported again.
   generated.episodes.name = context.output.stem().string();
   context.show("episodes", "solve", 1);
   ASSIGN_OR_RETURN(auto sample, solveSample(inputs.packs, generated.episodes,
@@ -133,7 +134,7 @@ Result<BakedPack> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInp
                 job, std::move(files), context);
 }
 
-/// The packs in `inputs` and, of the worlds among them, the packs of these kinds that they list.
+/// Opens the packs in `inputs`, with each world replaced by the packs of these kinds that it lists.
 Result<OpenPacks> openListed(const std::vector<std::filesystem::path>& inputs,
                              std::initializer_list<PackKind> kinds, ReadLog& log) {
   ASSIGN_OR_RETURN(auto given, openPacks(inputs));
@@ -156,7 +157,7 @@ Result<OpenPacks> openListed(const std::vector<std::filesystem::path>& inputs,
   return opened;
 }
 
-/// The centers of the objects in all of the packs.
+/// The centers of the objects in all packs.
 Result<std::map<std::string, Vec3>> centersIn(const std::vector<PackFile>& packs) {
   std::map<std::string, Vec3> all;
   for (const PackFile& pack : packs) {
@@ -171,7 +172,7 @@ Result<std::map<std::string, Vec3>> centersIn(const std::vector<PackFile>& packs
   return all;
 }
 
-/// An import at work.
+/// Carries out one import of episodes.
 class EpisodeImport {
  public:
   EpisodeImport(const EpisodeImportJob& job, const BakeContext& context)
@@ -190,7 +191,7 @@ class EpisodeImport {
   }
 
  private:
-  /// With what stands in other files.
+  /// The job's import options, completed with the content of other files.
   [[nodiscard]] Result<EpisodeImportOptions> importOptions() const {
     EpisodeImportOptions options = job_.import;
     if (!job_.only.empty()) {
@@ -205,7 +206,7 @@ class EpisodeImport {
     return options;
   }
 
-  /// Draws them in the packs, or warns that there are none.
+  /// Draws the missing starts in the packs, or warns if there are no packs.
   Result<void> giveStarts(SourceEpisodes& episodes) {
     if (job_.packs.empty()) {
       episodes.warnings.push_back(
@@ -240,8 +241,8 @@ class EpisodeImport {
 Result<BakedPack> generateInPacks(const EpisodeGenerationJob& job, const BakeContext& context) {
   ASSIGN_OR_RETURN(auto opened, openPacks(job.packs));
   RETURN_IF_ERROR(addGeometry(job, context.log, opened));
-  // The bytes of the pack do not depend on the order of the inputs, of which several may have one
-  // name.
+  // Sorted by content, too, because several inputs may have the same name, and the pack's bytes
+  // must not depend on the order of the inputs.
   std::ranges::sort(opened.files, {}, [](const SourceFile& file) {
     return std::tie(file.name, file.bytes, file.hash_high, file.hash_low);
   });

@@ -12,7 +12,7 @@
 namespace galactic::bake {
 namespace {
 
-/// So many parts of the free space are kept by themselves.
+/// Number of the largest parts of the free space that are listed individually.
 constexpr std::size_t kLargestParts = 8;
 
 RenderFigures figuresOf(const BakedRenderMeshes& meshes) {
@@ -171,8 +171,8 @@ EpisodeFigures figuresOf(const EpisodeOutcome& outcome) {
           .generation = outcome.generation};
 }
 
-/// Nothing where enough episodes can be solved or none was tried. It is of the sample, so the pack
-/// does not keep it.
+/// A warning if too few of the episodes that were tried can be solved. The pack does not store it,
+/// because it is only about the sample.
 std::vector<std::string> solveWarnings(const std::optional<EpisodeGeneration>& generation) {
   constexpr std::uint64_t kEnoughPercent = 80;
   constexpr std::uint64_t kAllPercent = 100;

@@ -18,20 +18,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The mesh formats searched for in folders; of one model in several, the first of them is taken.
+/// The mesh formats searched for in folders. If a model comes in several formats, the first one
+/// listed here is taken.
 constexpr std::array<std::string_view, 8> kMeshExtensions{".glb", ".gltf", ".obj", ".dae",
                                                           ".fbx", ".ply",  ".stl", ".off"};
-/// Files that stand for their whole folder.
+/// Stems of files that stand for their whole folder.
 constexpr std::array<std::string_view, 2> kFolderStems{"textured", "model"};
 
-/// How the stems of what lies beside such files begin in published sets: YCB's models without
-/// texture or with fewer triangles, and parts for collision, in a file or in several.
+/// Prefixes of the stems of other forms beside such files in published sets: YCB's models without
+/// texture or with fewer triangles, and collision meshes in one or several files.
 constexpr std::array<std::string_view, 7> kOtherForms{
     "nontextured",     "textured_simple", "textured_collision", "textured.", "collision",
     "model_collision", "model."};
 
-/// Folders that say how a model was made, not what it is: YCB's, the best first, and Google Scanned
-/// Objects'.
+/// Names of folders that describe how a model was made and not what it is: those of YCB, best
+/// first, and of Google Scanned Objects.
 constexpr std::array<std::string_view, 7> kMakeFolders{
     "google_16k", "google_64k", "google_512k", "poisson", "tsdf", "meshes", "clouds"};
 
@@ -42,7 +43,7 @@ std::size_t makeRank(std::string_view folder) {
 /// A model that stands for its folder.
 struct FolderModel {
   ObjectInput input;
-  /// Of several models of one object, that of the lowest rank is taken.
+  /// Of several models of one object, the one with the lowest rank is taken.
   std::size_t rank = 0;
 };
 
@@ -51,7 +52,7 @@ FolderModel modelOf(const fs::path& file) {
   const std::size_t rank = makeRank(folder.filename().string());
   const bool is_made = rank < kMakeFolders.size();
   const std::string name = (is_made ? folder.parent_path() : folder).filename().string();
-  // The uppermost folder has none.
+  // The root folder has no name.
   return {{file, name.empty() ? file.stem().string() : name}, is_made ? rank : 0};
 }
 
@@ -71,20 +72,20 @@ bool standsForFolder(const fs::path& path) {
          kFolderStems.end();
 }
 
-/// Whether a mesh beside the one that stands for the folder is that one in another form.
+/// Whether a mesh is another form of the one beside it that stands for the folder.
 bool isOtherForm(const fs::path& path) {
   const std::string stem = path.stem().string();
   const auto begins = [&](std::string_view form) { return stem.starts_with(form); };
   return standsForFolder(path) || std::ranges::any_of(kOtherForms, begins);
 }
 
-/// The mesh files of the folders at and below one of them.
+/// Finds the mesh files in a folder and below it.
 class MeshSearch {
  public:
   explicit MeshSearch(const fs::path& root) : root_(canonicalPath(root)) {}
 
-  /// Searches a folder. Links to folders wait: whoever searches them last knows which folders have
-  /// been found without them.
+  /// Searches a folder. Links to folders are left for followLinks(), when it is known which folders
+  /// can be reached without them.
   Result<void> search(const fs::path& folder) {
     if (!seen_.insert(canonicalPath(folder)).second) return {};
     ASSIGN_OR_RETURN(const auto entries, entriesOf(folder));
@@ -103,7 +104,8 @@ class MeshSearch {
     return {};
   }
 
-  /// Then the folders behind links, but those that hold the root: they would lead around it.
+  /// Searches the folders behind links, except those that contain the root, which would lead
+  /// outside it.
   Result<void> followLinks() {
     while (!links_.empty()) {
       std::vector<fs::path> links;
@@ -116,7 +118,7 @@ class MeshSearch {
     return {};
   }
 
-  /// In each folder in the order of formats and names.
+  /// The files found, in each folder in the order of formats and names.
   std::map<fs::path, std::vector<fs::path>> take() {
     for (auto& [folder, files] : folders_) {
       std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
@@ -128,13 +130,14 @@ class MeshSearch {
 
  private:
   fs::path root_;
-  /// Canonical: each folder is searched once, by whatever names it can be reached.
+  /// Canonical paths, so that each folder is searched only once, even if it can be reached by
+  /// several names.
   std::set<fs::path> seen_;
   std::vector<fs::path> links_;
   std::map<fs::path, std::vector<fs::path>> folders_;
 };
 
-/// The mesh files of each folder at and below `root`, in the order of formats and names.
+/// The mesh files in `root` and each folder below it, in the order of formats and names.
 Result<std::map<fs::path, std::vector<fs::path>>> meshesByFolder(const fs::path& root) {
   MeshSearch meshes(root);
   RETURN_IF_ERROR(meshes.search(root));
@@ -145,8 +148,8 @@ Result<std::map<fs::path, std::vector<fs::path>>> meshesByFolder(const fs::path&
 constexpr std::string_view kVisual = "_visual";
 constexpr std::string_view kCollision = "_collision";
 
-/// NAME, where `stem` is NAME and `end`, and both NAME_visual and NAME_collision are among `stems`
-/// but not NAME itself: so Gazebo lays out its models.
+/// NAME if `stem` is NAME followed by `end`, and both NAME_visual and NAME_collision but not NAME
+/// itself are among `stems`. Gazebo lays out its models in this way.
 std::optional<std::string> nameOfPair(const std::string& stem, std::string_view end,
                                       const std::set<std::string>& stems) {
   if (!stem.ends_with(end) || stem.size() == end.size()) return std::nullopt;
@@ -156,8 +159,9 @@ std::optional<std::string> nameOfPair(const std::string& stem, std::string_view 
   return is_pair ? std::optional(std::move(name)) : std::nullopt;
 }
 
-/// The objects of a folder in which no file stands for all of it, by their stems. Of a pair of
-/// visual and collision mesh the visual one is the object: it is the closer one.
+/// Adds the objects of a folder in which no file stands for the whole folder, named by their stems.
+/// Of a visual and a collision mesh that form a pair, the visual one becomes the object, because it
+/// is more accurate.
 void addStems(const std::vector<fs::path>& files, std::vector<ObjectInput>& objects) {
   std::set<std::string> stems;
   for (const fs::path& file : files) stems.insert(file.stem().string());
@@ -169,11 +173,12 @@ void addStems(const std::vector<fs::path>& files, std::vector<ObjectInput>& obje
   }
 }
 
-/// What a warning says of the meshes that the model of their folder, below `root`, hides.
+/// The warning about meshes that are left out because `model`, below `root`, stands for their
+/// folder.
 std::string leftOut(const fs::path& root, const fs::path& model,
                     const std::vector<fs::path>& hidden) {
   constexpr std::size_t kMostNamed = 6;
-  // Relative paths, because warnings go into packs, which must not depend on the machine.
+  // Relative paths, because warnings are stored in packs, which must not depend on the machine.
   std::vector<std::string> names;
   names.reserve(hidden.size());
   for (const fs::path& file : hidden) names.push_back(file.filename().string());
@@ -193,7 +198,7 @@ Result<void> addFolder(const fs::path& root, FoundObjects& found) {
                 "holds no mesh file; .glb, .gltf, .obj, .dae, .fbx, .ply, .stl and .off are looked "
                 "for");
   }
-  // By the folder that the object is named after: one model of each object.
+  // One model per object, by the folder that the object is named after.
   std::map<fs::path, FolderModel> models;
   for (const auto& [folder, files] : folders) {
     const auto whole = std::find_if(files.begin(), files.end(), standsForFolder);
@@ -203,7 +208,7 @@ Result<void> addFolder(const fs::path& root, FoundObjects& found) {
     }
     std::vector<fs::path> others;
     std::ranges::remove_copy_if(files, std::back_inserter(others), isOtherForm);
-    // Who names a folder of objects means all of them.
+    // A user who names this folder itself means all objects in it.
     if (folder == root && !others.empty()) {
       others.push_back(*whole);
       addStems(others, found.objects);
@@ -226,7 +231,7 @@ Result<FoundObjects> findObjects(const std::vector<fs::path>& inputs) {
   std::vector<ObjectInput>& objects = found.objects;
   for (const fs::path& input : inputs) {
     if (!isFolder(input)) {
-      // However many inputs there are: the name that it has in a folder that is searched.
+      // The object gets the same name as if its folder had been searched.
       objects.push_back(standsForFolder(input) ? modelOf(input).input
                                                : ObjectInput{input, input.stem().string()});
       continue;

@@ -16,8 +16,8 @@
 namespace galactic::bake {
 namespace {
 
-/// A movable object smaller than this probably has another unit, as one larger than kLargestObject
-/// has, meters; much larger ones are refused by the sphere fitter with the same question.
+/// A movable object smaller than this, in meters, or larger than kLargestObject probably has
+/// another unit. The sphere fitter refuses much larger ones with the same question.
 constexpr float kDoubtfulSmallness = 0.002F;
 
 float largestExtent(const Bounds& bounds) {
@@ -42,7 +42,8 @@ void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
 void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
                    std::vector<std::string>& warnings) {
   if (set.meets_tolerances) return;
-  // The surface is known at samples: a gap beyond eps by their distance is no miss.
+  // The surface is sampled, so a gap that exceeds eps by the distance of the samples still counts
+  // as covered.
   constexpr double kSlack = 1.2;
   const bool covered = set.guaranteed_gap <= kSlack * static_cast<double>(options.eps);
   if (covered && set.quality.thin_points > 0) {
@@ -69,15 +70,15 @@ void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
                   1000 * set.guaranteed_protrusion, 1000 * options.eps, 1000 * options.tau));
 }
 
-/// A published box that differs more from the mesh's stands in another frame, or is another
-/// object's. Meters.
+/// If a published box differs from the mesh's by more than this, it is probably in another frame or
+/// belongs to another object. Meters.
 constexpr float kDoubtfulBoxDifference = 0.005F;
 
 float farthestApart(const Vec3& a, const Vec3& b) {
   return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
 }
 
-/// The box as it is given, which need not contain every vertex.
+/// Takes the given box, which need not contain every vertex.
 void takeBox(const AuthoredShape& shape, BakedObject& object) {
   const Bounds& given = shape.box;
   BoxFitResult& fit = object.box;

@@ -24,23 +24,23 @@ namespace {
 
 /// One object on its way from file to pack.
 struct ObjectWork {
-  /// Its object is there when `done` says so.
+  /// Only valid if `done` holds a success.
   FinishedObject finished;
-  /// None where it was not begun.
+  /// None if the object was not begun.
   std::optional<Result<void>> done;
 };
 
 /// What the objects of a set share.
 struct ObjectTask {
   const ObjectJob& job;
-  /// None where no collection is given.
+  /// None if no collection is given.
   const std::optional<Collection>& collection;
   const ObjectJournal& journal;
-  /// With the threads of one object.
+  /// Its `threads` are those for one object.
   BakeContext context;
 };
 
-/// The options of one object: with the shape that a collection gives it.
+/// The options of one object, with the shape from the collection, if any.
 Result<ObjectBakeOptions> optionsOf(const std::string& name, const ObjectTask& task,
                                     std::vector<std::string>& warnings) {
   ObjectBakeOptions options = task.job.shape;
@@ -70,7 +70,7 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
     return importMesh(input.path, task.job.import);
   }();
   if (!asset) return tl::unexpected(asset.error());
-  // Templates of datasets say with a transform how large their objects are.
+  // Templates of datasets define the size of their objects by a transform.
   if (!asset->unit_is_stated && !task.job.import.transform) {
     RETURN_IF_ERROR(checkObjectSize(*asset, input.path.string()));
   }
@@ -90,7 +90,8 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
   return {};
 }
 
-/// Bakes it, unless that was done before. What one object throws ends no other.
+/// Bakes the object unless the journal holds it. An exception does not end the bake of other
+/// objects.
 Result<void> finishOne(const ObjectInput& input, const ObjectTask& task, FinishedObject& finished) {
   try {
     if (auto known = task.journal.recall(input)) {
@@ -107,7 +108,7 @@ Result<void> finishOne(const ObjectInput& input, const ObjectTask& task, Finishe
 std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, ObjectTask task,
                                 const BakeContext& context) {
   std::vector<ObjectWork> work(inputs.size());
-  // Several objects at once, or one on all threads.
+  // Either several objects at once, or one at a time on all threads.
   const bool alone = inputs.size() < context.threads;
   if (!alone) task.context.threads = 1;
   std::atomic<bool> stop{false};
@@ -125,13 +126,13 @@ std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, ObjectTa
   return work;
 }
 
-/// Of a set that was told to stop: what is done stays in its journal.
+/// The error for a set that was told to stop. The journal keeps what is done.
 Error interrupted(std::size_t done, std::size_t all) {
   return {ErrorCode::kInterrupted, "objects",
           fmt::format("interrupted after {} of {} objects", done, all)};
 }
 
-/// The collection of the job, if there is one; it joins the sources.
+/// Reads the job's collection, if there is one, and adds it to the sources.
 Result<std::optional<Collection>> readShapes(const std::filesystem::path& path,
                                              std::vector<SourceFile>& sources) {
   if (path.empty()) return std::nullopt;
@@ -140,7 +141,7 @@ Result<std::optional<Collection>> readShapes(const std::filesystem::path& path,
   return collection;
 }
 
-/// Moves what was baked into the outcome; the sources of the objects follow those that are there.
+/// Moves the baked objects into the outcome, and appends their files to the sources.
 void collect(const std::vector<ObjectInput>& inputs, std::vector<ObjectWork> work, ReadLog& log,
              ObjectSetOutcome& outcome, std::vector<SourceFile>& sources) {
   for (std::size_t n = 0; n < work.size(); ++n) {
@@ -152,7 +153,7 @@ void collect(const std::vector<ObjectInput>& inputs, std::vector<ObjectWork> wor
       continue;
     }
     for (SourceFile& file : finished.read.files) {
-      // Never absolute.
+      // Names in packs are never absolute.
       file.name = inputs[n].name + "/" + file.name;
       sources.push_back(std::move(file));
     }
@@ -188,7 +189,7 @@ Result<BakedPack> makeObjectPack(const ObjectJob& job, const BakeContext& contex
   std::vector<SourceFile> sources;
   ASSIGN_OR_RETURN(const auto collection, readShapes(job.collection, sources));
   if (collection) std::ranges::copy(collection->warnings, std::back_inserter(outcome.warnings));
-  // One object is done or not.
+  // A single object needs no journal: it is either done or not.
   std::unique_ptr<Journal> kept;
   if (inputs.size() > 1) {
     const std::filesystem::path partial = context.output.string() + ".partial";

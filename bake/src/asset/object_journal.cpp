@@ -93,8 +93,8 @@ bool isSound(const BakedRenderMeshes& meshes) {
          });
 }
 
-/// Whether all that it counts is there: its journal could be anybody's. What it holds beyond that
-/// is for whoever opens the pack to check.
+/// Whether all counts and indices are consistent, because anybody could have written the journal.
+/// The rest is checked when the pack is opened.
 bool isSound(const BakedObject& object, std::size_t radii) {
   const Surface& surface = object.surface;
   return std::ranges::all_of(object.spheres.spheres,

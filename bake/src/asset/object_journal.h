@@ -14,25 +14,25 @@
 
 namespace galactic::bake {
 
-/// An object that was baked, and what was read for it.
+/// A baked object and the files that were read for it.
 struct FinishedObject {
-  /// By their names below the folder of its mesh.
+  /// Names relative to the folder of the mesh.
   ReadFiles read;
   double import_seconds = 0;
   BakedObject object;
 };
 
-/// What the bake of a set of objects that was interrupted has done. Thread-safe.
+/// The objects that an interrupted bake of an object set has finished. Thread-safe.
 class ObjectJournal {
  public:
-  /// `journal`: null where nothing is kept. `radii`: how many there are.
+  /// `journal`: null if nothing is kept. `radii`: number of radii.
   ObjectJournal(std::unique_ptr<Journal> journal, std::size_t radii);
 
-  /// None where it was not baked, or not of what its files hold now.
+  /// The finished object; none if it was not baked, or if its files have changed since.
   [[nodiscard]] std::optional<FinishedObject> recall(const ObjectInput& input) const;
   /// Fails with kIo.
   [[nodiscard]] Result<void> add(const ObjectInput& input, const FinishedObject& finished) const;
-  /// After the pack is written.
+  /// Call it after the pack has been written.
   void remove() const;
 
  private:

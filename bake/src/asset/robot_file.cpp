@@ -15,7 +15,7 @@ void append(const std::vector<std::string>& more, std::vector<std::string>& warn
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
 
-/// A recipe from TOML or a published collection; its warnings go to the robot.
+/// Reads a recipe from TOML or a published collection. The robot receives the warnings.
 Result<std::optional<RobotRecipe>> readRecipe(const std::filesystem::path& path,
                                               SourceRobot& robot) {
   if (path.empty()) return std::nullopt;

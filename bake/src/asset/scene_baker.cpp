@@ -15,13 +15,14 @@
 namespace galactic::bake {
 namespace {
 
-/// A part of the free space left out is worth a warning from this share of the room's volume on.
+/// A part of the free space that is left out deserves a warning if its volume is at least this
+/// share of the room's.
 constexpr double kWorthMentioning = 0.1;
 
-/// What one column takes while its grid is made: as measured on the sample apartment.
+/// Memory that one column takes while its grid is made, as measured on the sample apartment.
 constexpr double kBytesPerColumn = 100;
 
-/// Meters, as of objects and robots.
+/// Meters; the same limit as for objects and robots.
 constexpr float kGreatestRadius = 10;
 
 Result<void> checkRadii(const std::vector<float>& radii) {
@@ -48,7 +49,8 @@ Result<void> checkRadii(const std::vector<float>& radii) {
   return {};
 }
 
-/// A ball larger than the scene finds no place in it, and takes long to find that out.
+/// Refuses a ball larger than the scene: it has no room there, and finding that out would take
+/// long.
 Result<void> checkFits(const std::vector<float>& radii, const Bounds& bounds) {
   const Vec3 size{bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y,
                   bounds.max.z - bounds.min.z};
@@ -59,7 +61,8 @@ Result<void> checkFits(const std::vector<float>& radii, const Bounds& bounds) {
                           radii.back(), size.x, size.y, size.z));
 }
 
-/// Length of the spans of `cells` that do not lie within one span of `lines`, to float rounding.
+/// Total length of the spans of `cells` that do not lie within one span of `lines`, up to float
+/// rounding.
 double freeBeyond(const Columns& cells, const Columns& lines) {
   double length = 0;
   for (std::size_t at = 0; at < cells.frame.columnCount(); ++at) {
@@ -74,12 +77,13 @@ double freeBeyond(const Columns& cells, const Columns& lines) {
   return length;
 }
 
-/// Collects what is to be said of the rooms of a scene: once, however many radii show it.
+/// Collects the warnings about the rooms of a scene, each once even if it applies to several radii.
 class RegionWarnings {
  public:
   explicit RegionWarnings(const SceneBakeOptions& options) : options_(options) {}
 
-  /// Notes what a grid shows; `room`: the spans that it keeps. Radii come in ascending order.
+  /// Adds the warnings for one grid. `room`: the spans that the grid keeps. Call it in ascending
+  /// order of radii.
   void add(const BakedGrid& baked, const Columns& room) {
     const float radius = baked.grid.frame.radius;
     const double volume = baked.totals[static_cast<std::size_t>(Region::kRoom)].volume;
@@ -122,7 +126,8 @@ class RegionWarnings {
   }
 
  private:
-  /// The hole through which the largest sphere passes is the last that is told.
+  /// Each larger radius overwrites the way out, so the warning describes the one for the largest
+  /// sphere that gets out.
   void addOpen(float radius, const Component& part, const Columns& room) {
     if (open_.empty() || open_.back() != radius) open_.push_back(radius);
     if (part.columns_at_edge == 0) {
@@ -143,7 +148,8 @@ class RegionWarnings {
         way->at.x, way->at.y, way->at.z, way->width + 2 * room.frame.radius);
   }
 
-  /// Where there is much floor outside, it may be what was wanted. Told of the smallest radius.
+  /// Warns if the outside has so much floor that the user may have wanted it. Only for the smallest
+  /// radius.
   void addYard(float radius, const Component& outside, const std::vector<Component>& parts) {
     double floor = 0;
     for (const Component& part : parts) {
@@ -157,7 +163,7 @@ class RegionWarnings {
                     radius, outside.yard, floor));
   }
 
-  /// Larger spheres leave less of the same part.
+  /// Warns of a closed part, unless it belongs to one that a smaller radius has shown.
   void addClosed(float radius, const Component& part, double room) {
     const Bounds& bounds = part.bounds;
     const Vec3 middle = (bounds.min + bounds.max) * 0.5F;
@@ -175,12 +181,12 @@ class RegionWarnings {
   }
 
   const SceneBakeOptions& options_;
-  /// Radii with no free space at all, and with some outside of the room alone.
+  /// Radii without any free space, and radii with free space only outside the room.
   std::vector<float> full_;
   std::vector<float> full_rooms_;
   std::vector<float> open_;
   std::string way_out_;
-  /// The room from which a way out is still to be searched, which takes long: once, in the end.
+  /// The room whose way out is searched once, at the end, because the search takes long.
   std::optional<Columns> open_room_;
   std::vector<Bounds> known_;
   bool is_yard_known_ = false;
@@ -242,7 +248,7 @@ class SceneBaker {
     return chooseFreeSpace(columns, options_.free_space, room_ ? &*room_ : nullptr);
   }
 
-  /// The casts of the check are the Bullet engine's own.
+  /// The check uses the same casts as the Bullet engine, so it would prove nothing for that engine.
   [[nodiscard]] bool wantsCheck() const {
     return options_.check_columns > 0 && options_.engine != Engine::kBullet;
   }
@@ -255,8 +261,8 @@ class SceneBaker {
     if (options_.coverage == Coverage::kColumn) {
       return checkWithCasts(mesh_, columns, *caster_, check_options, threads_);
     }
-    // Casts know single lines only: they check the center lines, and what is free over a cell has
-    // to be free on its center line.
+    // Casts can only check single lines. So they check the center lines, and what is free over a
+    // cell must be free on its center line.
     const ExactColumns lines = exactColumns(mesh_, frame, Coverage::kColumn, threads_);
     CastCheck check = checkWithCasts(mesh_, lines.columns, *caster_, check_options, threads_);
     check.errors += freeBeyond(columns, lines.columns);
@@ -268,7 +274,7 @@ class SceneBaker {
   StageTimes& times_;
   unsigned threads_;
   std::optional<BulletColumnCaster> caster_;
-  /// Of the smallest radius: all others keep the same room.
+  /// The room for the smallest radius; all others keep the same room.
   std::optional<Columns> room_;
 };
 

@@ -18,14 +18,14 @@ Result<OpenDataset*> datasetOf(const SceneJob& job, BakeLibraries& libraries) {
   return libraries.datasets().open(job.input, {job.import.allow_outside});
 }
 
-/// Where the names of its files begin.
+/// The folder that the scene's file names are relative to.
 Result<fs::path> folderOf(const SceneJob& job, BakeLibraries& libraries) {
   if (!job.instance) return job.input.parent_path();
   ASSIGN_OR_RETURN(const OpenDataset* const dataset, datasetOf(job, libraries));
   return dataset->scenes.folder();
 }
 
-/// A file's mesh as a scene composed of it alone.
+/// Composes the scene of a dataset. A single file becomes a scene that consists only of its mesh.
 Result<ComposedScene> readMeshes(const SceneJob& job, BakeLibraries& libraries) {
   if (job.instance) {
     ASSIGN_OR_RETURN(OpenDataset* const dataset, datasetOf(job, libraries));

@@ -9,7 +9,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Where a surface has colors and a part of it has none.
+/// The color of parts without one in a surface that has colors.
 constexpr std::array<float, 4> kNeutral{0.6F, 0.6F, 0.6F, 1.0F};
 
 std::uint32_t byteOf(double value) {

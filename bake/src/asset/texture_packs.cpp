@@ -6,7 +6,8 @@
 namespace galactic::bake {
 namespace {
 
-/// Its name tells what is in it.
+/// Whether an intact texture pack exists. Its content need not be compared, as the name is a hash
+/// of it.
 bool isThere(const std::filesystem::path& pack) {
   const auto opened = PackFile::open(pack);
   return opened && opened->kind() == PackKind::kTexture;
@@ -32,7 +33,7 @@ Result<void> TexturePacks::provide(const std::filesystem::path& pack,
 
 TexturePacks::Entry& TexturePacks::entryOf(const std::filesystem::path& pack) {
   const std::lock_guard lock(mutex_);
-  // An entry keeps its place.
+  // References to the elements of a std::map stay valid.
   return entries_[pack];
 }
 

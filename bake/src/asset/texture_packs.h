@@ -8,15 +8,16 @@
 
 namespace galactic::bake {
 
-/// Texture packs that scenes share: which of them are there and whole. Each is read at most once,
-/// however many scenes show it, or never where this run made it. Thread-safe.
+/// Keeps track of which texture packs, shared between scenes, exist and are intact. A pack is read
+/// at most once, however many scenes show it, and not at all if this run made it. Thread-safe.
 class TexturePacks {
  public:
-  /// One that is not is looked at again the next time: another bake may make it meanwhile.
+  /// Whether `pack` exists and is intact. If not, the next call looks again, because another bake
+  /// may have made it meanwhile.
   [[nodiscard]] bool isWhole(const std::filesystem::path& pack);
 
-  /// Lets `make` put the pack there, unless it is there and whole. Whoever else wants the pack
-  /// waits, so `make` must not ask for it. Fails with the error of `make`.
+  /// Calls `make` to create the pack unless it exists and is intact. Other threads that want the
+  /// pack wait, so `make` must not ask for it. Fails with the error of `make`.
   [[nodiscard]] Result<void> provide(const std::filesystem::path& pack,
                                      const std::function<Result<void>()>& make);
 
