@@ -17,18 +17,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of builds of this pack that were killed.
+/// Removes what killed builds of this pack left behind.
 void removeLeftovers(const fs::path& pack) {
   (void)removeStaleParts(pack.parent_path(), {.target = pack.filename().string()});
 }
 
-/// How long a bake takes, for comparison only. A robot takes longest, however small its meshes.
+/// A measure of how long a bake takes, only for comparison. A robot takes longest, however small
+/// its meshes.
 std::uint64_t effortOf(const PackJob& pack) {
   const bool is_robot = std::holds_alternative<RobotJob>(pack.job);
   return is_robot ? std::numeric_limits<std::uint64_t>::max() : pack.source_bytes;
 }
 
-/// The indices of the assets that are this shard's, ascending.
+/// The indices of this shard's assets, ascending.
 std::vector<std::size_t> assetsOf(const WorldPlan& plan, const Shard& shard) {
   std::vector<std::size_t> assets;
   for (std::size_t n = shard.index; n < plan.assets.size(); n += shard.count) assets.push_back(n);
@@ -68,7 +69,7 @@ class WorldBuild {
   }
 
  private:
-  /// Other shards may be at work in the same folders.
+  /// Removes only stale parts, because other shards may be working in the same folders.
   void removeLeftoversOfAll() const {
     if (tools_.cache) (void)removeStaleParts(tools_.cache->folder(), {.is_recursive = true});
     removeLeftovers(plan_.world.output);
@@ -84,7 +85,7 @@ class WorldBuild {
   void bakeAssets() {
     std::vector<std::size_t> order = assetsOf(plan_, options_.shard);
     if (order.empty()) return;
-    // The longest first.
+    // The longest bakes first.
     std::ranges::stable_sort(order, std::greater{},
                              [&](std::size_t n) { return effortOf(plan_.assets[n]); });
     const auto at_once =
@@ -114,14 +115,15 @@ class WorldBuild {
     outcome = makeOne(episodes, options_.threads);
   }
 
-  /// The name of an asset that failed; empty where none did.
+  /// The name of the first asset that failed; empty if none did.
   [[nodiscard]] std::string firstFailed() const {
     const auto failed = std::ranges::find(outcome_.packs, PackState::kFailed, &PackOutcome::state);
     return failed == outcome_.packs.end() ? std::string() : failed->name;
   }
 
-  /// Leaves packs that failed out of those in which episodes are generated. False where something
-  /// is left out without which there are none: the robot; and whatever imported episodes may name.
+  /// Removes failed packs from those in which episodes are generated. Returns false if no episodes
+  /// can be made without a failed pack: if it is the robot, or if the episodes are imported, as
+  /// they may name any pack.
   [[nodiscard]] bool leaveOutFailed(PackJob& episodes) const {
     auto* generation = std::get_if<EpisodeGenerationJob>(&episodes.job);
     if (generation == nullptr) return false;
@@ -139,7 +141,7 @@ class WorldBuild {
     return outcome;
   }
 
-  /// Whether there is a world to link after this run.
+  /// Whether to link a world after this run.
   [[nodiscard]] bool linksWorld() const {
     if (options_.shard.count > 1 || outcome_.stopped) return false;
     return !failed_ ||

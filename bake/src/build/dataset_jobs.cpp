@@ -23,8 +23,8 @@ constexpr std::array<Named<MissingPolicy>, 3> kMissingNames{{{"fail", MissingPol
                                                              {"skip", MissingPolicy::kSkip},
                                                              {"without", MissingPolicy::kWithout}}};
 
-/// The configuration of a dataset that composes scenes, the first by name, beside the files of a
-/// folder. One that only says how to read scans has no scenes of its own.
+/// The first configuration by name, in a folder, of a dataset that composes scenes. A configuration
+/// that only describes how to read scans has no scenes of its own.
 std::optional<std::filesystem::path> composingDataset(const std::filesystem::path& folder) {
   std::set<std::filesystem::path> configurations;
   std::error_code error;
@@ -40,7 +40,7 @@ std::optional<std::filesystem::path> composingDataset(const std::filesystem::pat
   return std::nullopt;
 }
 
-/// The scans in a folder, which is not that of another dataset.
+/// The scans in a folder. Fails if the folder belongs to a dataset with composed scenes.
 Result<std::vector<SceneFile>> scansIn(const std::filesystem::path& folder) {
   if (const auto dataset = composingDataset(folder)) {
     return fail(
@@ -52,7 +52,7 @@ Result<std::vector<SceneFile>> scansIn(const std::filesystem::path& folder) {
   return findSceneFiles(folder);
 }
 
-/// Ascending.
+/// The names of the files, ascending.
 std::vector<std::string> namesOf(const std::vector<SceneFile>& files) {
   std::vector<std::string> names;
   names.reserve(files.size());
@@ -61,7 +61,7 @@ std::vector<std::string> namesOf(const std::vector<SceneFile>& files) {
   return names;
 }
 
-/// The names among `scenes` that fit the patterns.
+/// The names among `scenes` that match any of the patterns; all without patterns.
 Result<std::vector<std::string>> wantedScenes(const std::vector<std::string>& scenes,
                                               const std::vector<std::string>& patterns) {
   if (patterns.empty()) return scenes;
@@ -88,7 +88,7 @@ MeshImportOptions meshOptionsOf(const DatasetJobs& dataset) {
   return options;
 }
 
-/// Whether the pack of that name is of this object, and not of another template or of another
+/// Whether `pack`, which has the object's name, is for this object and not for another template or
 /// scale.
 bool isSameObject(const PackJob& pack, const DatasetObject& object) {
   const auto* known = std::get_if<ObjectJob>(&pack.job);
@@ -117,7 +117,7 @@ void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList&
   }
 }
 
-/// Which way is up in a scan, as its attributes say where it has any.
+/// The up axis of a scan, from its attributes if it has any.
 Result<std::optional<UpAxis>> upOf(const SceneFile& scan) {
   if (scan.attributes.empty()) return scan.up;
   ASSIGN_OR_RETURN(const Json json,
@@ -164,7 +164,8 @@ Result<void> addInstance(const std::string& name, const DatasetJobs& dataset,
         ErrorCode::kInvalidInput, fmt::format("{}: {}", dataset.input.string(), name),
         survey->missing.front() + "; add it, or bake with `missing` skip or `missing` without");
   }
-  // Without its stage nothing else matters; the stage is looked for first.
+  // Without the stage, nothing else matters. The stage is the first entry because it is looked for
+  // first.
   if (!survey->has_stage && lacks) survey->missing.resize(1);
   if (!survey->has_stage || (lacks && dataset.missing == MissingPolicy::kSkip)) {
     packs.leaveOut({name, std::move(survey->missing)});

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 std::string sentenceOf(const Error& error) { return error.text(); }
 
-/// What a job lacks, kind by kind.
+/// Finds what a job lacks, for each kind of job.
 class MissingFiles {
  public:
   explicit MissingFiles(BakeLibraries& libraries) : libraries_(libraries) {}
@@ -40,7 +40,7 @@ class MissingFiles {
       return lookForUnreadable(job.instance->name, **dataset);
     }
     for (const std::string& missing : composed->missing) add(missing);
-    // These name their meshes themselves.
+    // These sentences already name their meshes.
     for (const std::string& missing : composed->scene.missing) add(missing);
   }
   void lookInto(const ObjectJob& job) {
@@ -69,7 +69,7 @@ class MissingFiles {
     addLooks(*asset, mesh);
   }
 
-  /// What cannot be read ends the composition of a scene; behind the first there may be others.
+  /// Composing a scene ends at the first file that cannot be read. This also finds the others.
   void lookForUnreadable(const std::string& scene, OpenDataset& dataset) {
     const auto survey = dataset.scenes.survey(scene);
     if (!survey) return;
@@ -79,7 +79,7 @@ class MissingFiles {
     }
   }
 
-  /// Textures and materials, without which a mesh is baked all the same.
+  /// Adds missing textures and materials, which do not prevent a mesh from being baked.
   void addLooks(const SourceAsset& asset, const fs::path& mesh) {
     for (const std::string& missing : asset.missing) {
       add(fmt::format("{}: {}", mesh.lexically_normal().string(), missing));
@@ -103,7 +103,7 @@ std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads,
   parallelFor(threads, all.size(), [&](std::size_t n) {
     all[n] = {plan.assets[n].name, MissingFiles(libraries).of(plan.assets[n].job)};
   });
-  // What is generated is made in packs that are not there yet, and so are starts drawn.
+  // Episodes are generated, and starts are drawn, in packs that do not exist yet.
   if (plan.episodes && !std::holds_alternative<EpisodeGenerationJob>(plan.episodes->job)) {
     auto import = std::get<EpisodeImportJob>(plan.episodes->job);
     import.packs.clear();

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// This program's own content: another build may bake other bytes.
+/// The hash of this program, because another build may bake other bytes.
 Result<std::string> programDigest(FileDigests& digests) {
   ASSIGN_OR_RETURN(const auto program, digests.of("/proc/self/exe"));
   return hexOf(program);
@@ -31,7 +31,7 @@ std::string relativeName(const fs::path& file, const fs::path& folder) {
   return fs::absolute(file, problem).lexically_normal().lexically_relative(folder).generic_string();
 }
 
-/// What the bake read, for the cache: with the content that the readers saw.
+/// The files that the bake read, with the content that the readers saw, for the cache.
 Result<ReadFiles> readFilesOf(const ReadLog& log, const PackJob& pack, FileDigests& digests) {
   ReadFiles read;
   for (const ReadFile& file : log.files()) {
@@ -51,7 +51,7 @@ Result<ReadFiles> readFilesOf(const ReadLog& log, const PackJob& pack, FileDiges
   return read;
 }
 
-/// Where a texture pack that scenes share is kept.
+/// The places of a texture pack that scenes share: for the world, and in the cache.
 struct TexturePlaces {
   fs::path used;
   fs::path kept;
@@ -67,7 +67,8 @@ TexturePlaces placesOf(const std::string& hash, const PackJob& pack, BuildTools&
   return {.used = texturesOf(pack) / name, .kept = tools.cache->folder() / "textures" / name};
 }
 
-/// Whether the texture packs are there, or put there, that a bake of before shared.
+/// Whether the texture packs that an earlier bake shared exist; takes them from the cache if
+/// possible.
 bool hasTextures(const PackJob& pack, const PackFigures& figures, BuildTools& tools) {
   const std::vector<std::string> textures = sharedTexturesOf(figures);
   if (textures.empty()) return true;
@@ -81,7 +82,7 @@ bool hasTextures(const PackJob& pack, const PackFigures& figures, BuildTools& to
   });
 }
 
-/// Keeps what a bake shared, for worlds in other folders.
+/// Puts the textures that a bake shared into the cache, for worlds in other folders.
 Result<void> keepTextures(const PackJob& pack, const PackFigures& figures, BuildTools& tools) {
   for (const std::string& hash : sharedTexturesOf(figures)) {
     const TexturePlaces places = placesOf(hash, pack, tools);
@@ -92,7 +93,7 @@ Result<void> keepTextures(const PackJob& pack, const PackFigures& figures, Build
   return {};
 }
 
-/// A pack on its way from its job to its outcome.
+/// Turns one pack's job into its outcome.
 class PackBuild {
  public:
   PackBuild(const PackJob& pack, BuildTools& tools) : pack_(pack), tools_(tools) {
@@ -112,7 +113,7 @@ class PackBuild {
   [[nodiscard]] PackOutcome& outcome() { return outcome_; }
 
  private:
-  /// Whether the pack was made before; it is then put where it belongs.
+  /// Whether the cache holds the pack, which is then put at its output path.
   Result<bool> takeFromCache() {
     auto found = tools_.cache->find(key_, pack_.folder, tools_.libraries.digests());
     if (!found || !hasTextures(pack_, found->figures, tools_)) return false;
@@ -124,7 +125,8 @@ class PackBuild {
 
   /// Bakes the pack and keeps it in the cache.
   Result<void> bakeAnew(unsigned threads) {
-    // Before they are read: should one change meanwhile, the pack is found to be old the next time.
+    // Take the digests before the files are read: if a file changes meanwhile, the next build finds
+    // the pack to be out of date.
     if (tools_.cache) {
       for (const fs::path& file : filesOf(pack_.job)) (void)tools_.libraries.digests().of(file);
     }
@@ -152,7 +154,7 @@ class PackBuild {
     outcome_.figures = figuresOf(made);
     const bool is_kept = outcome_.failures.empty() && outcome_.log.isSettled();
     if (!tools_.cache || !is_kept) return {};
-    // The pack is there all the same.
+    // Only a warning, as the pack itself has been made.
     if (const auto kept = keep(); !kept) {
       outcome_.warnings.push_back("is not in the cache and will be baked again: " +
                                   kept.error().text());
@@ -172,10 +174,10 @@ class PackBuild {
   std::string key_;
 };
 
-/// Where an input stands in messages of an error.
+/// The input that error messages name.
 fs::path inputOf(const PackJob& pack) {
   const auto* scene = std::get_if<SceneJob>(&pack.job);
-  // The scenes of a dataset have its file in common.
+  // All scenes of a dataset have the same input file.
   if (scene != nullptr && scene->instance) {
     return scene->input.parent_path() / scene->instance->name;
   }
@@ -183,8 +185,8 @@ fs::path inputOf(const PackJob& pack) {
   return files.empty() ? pack.output : files.front();
 }
 
-/// What `bake` returns, or what it throws as an error at `where`: what one pack throws, whose
-/// reader was killed or whose memory ran out, ends no other.
+/// The result of `bake`, with an exception turned into an error at `where`: if a pack's reader is
+/// killed or its memory runs out, other packs continue.
 template <class Bake>
 auto resultOf(const fs::path& where, const Bake& bake) -> decltype(bake()) {
   try {
@@ -204,7 +206,7 @@ PackOutcome makePack(const PackJob& pack, unsigned threads, BuildTools& tools) {
     return build.make(threads);
   });
   PackOutcome& outcome = build.outcome();
-  // What was interrupted is still to be done.
+  // An interrupted pack has not failed: it is still to be made.
   if (!done && done.error().code != ErrorCode::kInterrupted) {
     outcome.state = PackState::kFailed;
     outcome.figures.reset();
@@ -224,7 +226,7 @@ PackOutcome makeWorld(const PackJob& world, BuildTools& tools, std::vector<Linke
     outcome.figures = figuresOf(*made);
   } else {
     outcome.state = PackState::kFailed;
-    // Of what the packs lack together, no one of them is the place.
+    // An error about the packs together names none of them.
     if (made.error().where.empty()) made.error().where = world.output.string();
     outcome.failures.push_back({world.output, std::move(made.error())});
   }

@@ -16,17 +16,17 @@ struct BuildTools {
   BakeLibraries& libraries;
   bool keep_going = false;
   bool dry_run = false;
-  /// None where nothing is remembered.
+  /// None if results are not cached.
   std::optional<BakeCache> cache{};
   MemoryBudget memory{std::numeric_limits<std::uint64_t>::max()};
 };
 
-/// Makes one pack on `threads` threads, or finds that it was made before. Tells the observer.
+/// Makes one pack on `threads` threads, or takes it from the cache, and notifies the observer.
 /// Thread-safe for different packs.
 PackOutcome makePack(const PackJob& pack, unsigned threads, BuildTools& tools);
 
-/// The same of a world, which is never in the cache, and of which nobody is told; `linked` gets
-/// what it lists.
+/// The same for a world, which is never cached and of which the observer is not notified. `linked`
+/// receives the packs that the world lists.
 PackOutcome makeWorld(const PackJob& world, BuildTools& tools, std::vector<LinkedPack>& linked);
 
 }  // namespace galactic::bake

@@ -24,7 +24,7 @@ fs::path folderOf(const fs::path& file) {
   return (problem ? file : absolute).lexically_normal().parent_path();
 }
 
-/// Null where the job has none.
+/// The radii of a job; null if its kind has none.
 const std::vector<float>* radiiOf(const Job& job) {
   if (const auto* scene = std::get_if<SceneJob>(&job)) return &scene->grids.radii;
   if (const auto* object = std::get_if<ObjectJob>(&job)) return &object->shape.spheres.radii;
@@ -32,7 +32,7 @@ const std::vector<float>* radiiOf(const Job& job) {
   return nullptr;
 }
 
-/// How the robot's file of the job, if it has one, is read.
+/// The import options of the job's robot, or the defaults if it has none.
 RobotImportOptions importOptionsOf(const Job& job) {
   const auto* robot = std::get_if<RobotJob>(&job);
   return robot == nullptr ? RobotImportOptions() : robotOptionsOf(*robot);
@@ -126,7 +126,7 @@ Result<void> PackList::checkInputFolders() const {
       return refuse("which is the folder of scans " + folder.string() + " or inside it");
     }
   }
-  // Many packs have their input in the same folder.
+  // Many packs have their input in the same folder, which is checked only once.
   std::set<fs::path> seen;
   for (const PackJob& pack : plan_.assets) {
     if (!seen.insert(pack.folder).second) continue;
@@ -154,7 +154,7 @@ Result<void> PackList::checkRadii() const {
 }
 
 Result<void> PackList::checkForEpisodes() const {
-  // What it lacks may be in what is broken.
+  // What is missing may be in one of the broken scenes.
   if (!plan_.broken.empty()) return {};
   const auto lacks = [](const char* what) {
     return fail(ErrorCode::kInvalidInput, "",
@@ -184,7 +184,7 @@ const PackJob* PackList::find(const std::string& name) const {
   return found == plan_.assets.end() ? nullptr : &*found;
 }
 
-/// Whether there is all that starts are drawn with, but for the scenes.
+/// Whether there is everything except scenes that drawing starts requires.
 bool PackList::hasObjectsAndRobot() const {
   const auto is_object = [](const PackJob& pack) {
     return std::holds_alternative<ObjectJob>(pack.job);

@@ -14,49 +14,50 @@ class PackList {
  public:
   explicit PackList(const std::filesystem::path& world);
 
-  /// A pack NAME.pack below the world's folder; `input` is the job's main one.
+  /// Adds a pack NAME.pack below the world's folder. `input`: the main input of the job.
   PackJob& add(const std::string& name, Job job, const std::filesystem::path& input);
   void setEpisodes(EpisodeImportJob job);
-  /// In the packs of scenes, objects and robot.
+  /// The episodes are generated in the packs of scenes, objects and robot that the list holds.
   void setEpisodes(EpisodeGenerationJob job);
-  /// The same of an object that scenes of a dataset move.
+  /// Adds the pack of an object that scenes of a dataset may move.
   void addMovable(const std::string& name, ObjectJob job);
   void setTask(std::vector<OptionText> task);
   void leaveOut(LeftOut scene) { plan_.left_out.push_back(std::move(scene)); }
   void addBroken(BrokenScene scene) { plan_.broken.push_back(std::move(scene)); }
-  /// A folder that is an input as a whole: no pack may be written into it.
+  /// Forbids writing packs into `folder`, because all of it is an input.
   void keepOutOf(const std::filesystem::path& folder) { input_folders_.push_back(folder); }
-  /// Says each sentence once.
+  /// Adds a warning, unless the list already holds it.
   void warn(const std::string& warning);
   /// Where the packs go.
   [[nodiscard]] const std::filesystem::path& folder() const { return plan_.folder; }
-  /// The pack of this name; null where there is none.
+  /// The pack with this name; null if there is none.
   [[nodiscard]] const PackJob* find(const std::string& name) const;
-  /// Fails with kInvalidInput where the packs would not have the same radii, and not fit together.
+  /// Fails with kInvalidInput if the packs have different radii, which would not fit together.
   [[nodiscard]] Result<void> checkRadii() const;
-  /// Fails with kInvalidInput where the packs so far lack what generated episodes need: an object,
-  /// and a robot with a recipe.
+  /// Fails with kInvalidInput if the packs so far lack what generated episodes need: an object, and
+  /// a robot with a recipe.
   [[nodiscard]] Result<void> checkForEpisodes() const;
 
-  /// The plan, its assets sorted. Fails with kInvalidInput where two packs have one name, where one
-  /// would lie outside of the world's folder, where no scene is left, and where that folder is an
-  /// input's.
+  /// The plan, with its assets sorted. Fails with kInvalidInput if two packs have the same name, if
+  /// one would lie outside the world's folder, if no scene is left, or if that folder belongs to an
+  /// input.
   [[nodiscard]] Result<WorldPlan> finish();
 
  private:
   [[nodiscard]] Result<void> checkScenes() const;
   [[nodiscard]] Result<void> checkFolder() const;
-  /// Packs among a dataset's own files would be found by whoever reads it next.
+  /// Refuses to write packs into a folder of inputs, where the dataset's next reader would find
+  /// them.
   [[nodiscard]] Result<void> checkInputFolders() const;
   [[nodiscard]] bool hasObjectsAndRobot() const;
-  /// Gives them the packs in which they are generated, or their starts are drawn.
+  /// Gives the episodes the packs in which they are generated or their starts are drawn.
   void completeEpisodes();
 
   WorldPlan plan_;
   std::vector<std::filesystem::path> input_folders_;
 };
 
-/// Adds a pack for each wanted scene of the dataset, and one for each movable object in them.
+/// Adds a pack for each wanted scene of the dataset and for each movable object in these scenes.
 [[nodiscard]] Result<void> addDataset(const DatasetJobs& dataset, BakeLibraries& libraries,
                                       PackList& packs);
 

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where files of a recipe are looked for.
+/// The folders in which a recipe's files are looked for.
 std::vector<fs::path> rootsOf(const RecipeSource& source) {
   const fs::path beside = source.recipe.parent_path();
   std::vector<fs::path> roots{beside.empty() ? fs::path(".") : beside};
@@ -26,7 +26,7 @@ tl::unexpected<Error> located(Error error, const std::string& place) {
   return tl::unexpected<Error>(std::move(error));
 }
 
-/// Makes jobs of the tables of a recipe.
+/// Makes jobs from the tables of a recipe.
 class RecipeJobs {
  public:
   RecipeJobs(const RecipeSource& source, const WorldRecipe& recipe, BakeLibraries& libraries,
@@ -101,8 +101,8 @@ class RecipeJobs {
     return {};
   }
 
-  /// What stands on the command line is about episodes that the recipe generates; the seed also
-  /// about starts that are drawn for those that it imports.
+  /// Options on the command line apply to episodes that the recipe generates; the seed also applies
+  /// to starts drawn for imported episodes.
   [[nodiscard]] Result<void> checkOverrides() const {
     const auto& [count, seed] = source_.episodes;
     if (!count && !seed) return {};
@@ -115,7 +115,7 @@ class RecipeJobs {
   }
 
   Result<void> addEpisodes(const RecipeAssets& assets) {
-    // Those that are generated are made in packs that do not exist yet.
+    // Generated episodes have no inputs: the packs they are made in do not exist yet.
     if (assets.inputs.empty()) {
       EpisodeGenerationJob job;
       if (auto read = readOptions(assets, "generated episodes", job); !read) return read;
@@ -146,7 +146,8 @@ class RecipeJobs {
     return inputs;
   }
 
-  /// The options of a table, and before them those for all tables, which episodes have nothing of.
+  /// Reads the options for all tables, which do not apply to episodes, and then those of this
+  /// table.
   template <class Target>
   Result<void> readOptions(const RecipeAssets& assets, std::string_view what, Target& target) {
     constexpr bool kIsEpisodes =

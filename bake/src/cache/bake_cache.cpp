@@ -21,7 +21,7 @@ std::string hexOf(std::string_view text) {
   return hexOf(describeBytes({}, std::as_bytes(std::span(text))));
 }
 
-/// The files of a key's entries, the youngest first; of one age by name.
+/// The entry files of a key, newest first; equally old ones by name.
 std::vector<fs::path> entriesIn(const fs::path& folder) {
   std::vector<std::pair<fs::file_time_type, fs::path>> dated;
   std::error_code problem;
@@ -46,7 +46,8 @@ fs::path packBeside(const fs::path& entry) {
   return pack.replace_extension(".pack");
 }
 
-/// Whether the pack is the one that was stored: links share its bytes with what users own.
+/// Whether the pack is still as it was stored. Users could have changed it, as a hard link shares
+/// its bytes.
 bool isIntact(const fs::path& pack, const SourceFile& digest) {
   const auto found = describeFile(pack);
   return found && sameContent(*found, digest);
@@ -80,12 +81,12 @@ Result<void> BakeCache::store(const BakeInputs& inputs, const fs::path& pack,
                               const PackFigures& figures) const {
   ASSIGN_OR_RETURN(auto digest, describeFile(pack));
   const std::string text = encodeCacheEntry({inputs, digest, figures});
-  // One name for one set of inputs, whatever the report says of times and places.
+  // The name depends only on the inputs, not on times and paths in the figures.
   const std::string name = hexOf(encodeCacheEntry({inputs, {}, {}}));
   const fs::path folder = folder_ / hexOf(inputs.key);
   RETURN_IF_ERROR(makeFolders(folder));
   const fs::path entry = folder / (name + std::string(kEntrySuffix));
-  // The pack first: an entry without its pack is none.
+  // Store the pack first, because an entry is invalid without it.
   if (auto kept = linkOrCopy(pack, packBeside(entry)); !kept) return kept;
   if (auto written = writeFileAtomically(entry, text); !written) {
     return written;

@@ -13,13 +13,14 @@ namespace galactic::bake {
 
 /// What a bake depends on: its key and the files that it reads.
 struct BakeInputs {
-  /// Everything but files that decides the result: tool and format version, kind, options, names.
+  /// Everything but the files that decides the result: tool and format version, kind, options,
+  /// names.
   std::string key;
-  /// Relative to the folder of the bake, so that a moved dataset is found again. Settled.
+  /// Paths are relative to the folder of the bake, so that a moved dataset still matches. Settled.
   ReadFiles read;
 };
 
-/// A bake that was done before.
+/// An earlier bake.
 struct CachedBake {
   /// The pack, inside the cache.
   std::filesystem::path pack;
@@ -27,28 +28,28 @@ struct CachedBake {
   PackFigures figures;
 };
 
-/// Packs by content: a bake whose key, files and absent files are what they were is not done again,
-/// whatever the files' dates. It is a folder; several processes may use it at once, and it may be
-/// deleted at any time. Entries that are damaged are as if they were not there.
+/// Packs by content: a bake whose key, files and absent files are unchanged is not repeated,
+/// whatever the dates of the files. The cache is a folder that several processes may use at once
+/// and that may be deleted at any time. Damaged entries are ignored.
 ///
-/// A result is found without knowing beforehand which files the bake would read: under each key
-/// lie the results of the last bakes with the files that each read (as in ccache's manifests).
+/// Finding a result does not require knowing which files the bake would read: each key holds the
+/// results of the latest bakes together with the files that each read (like ccache's manifests).
 class BakeCache {
  public:
-  /// Results kept for one key; the oldest make way.
+  /// Results kept per key. The oldest are dropped.
   static constexpr std::size_t kResultsPerKey = 4;
 
   explicit BakeCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// The result for `key` whose files, seen from `folder`, are as they are now. Thread-safe.
+  /// The result for `key` whose files, relative to `folder`, have not changed. Thread-safe.
   [[nodiscard]] std::optional<CachedBake> find(const std::string& key,
                                                const std::filesystem::path& folder,
                                                FileDigests& digests) const;
 
-  /// Keeps the pack at `pack` (linked where the file system allows it, else copied) as the result
-  /// of `inputs`. Fails with kIo. Thread-safe.
+  /// Keeps the pack at `pack` (linked if the file system allows it, else copied) as the result of
+  /// `inputs`. Fails with kIo. Thread-safe.
   [[nodiscard]] Result<void> store(const BakeInputs& inputs, const std::filesystem::path& pack,
                                    const PackFigures& figures) const;
 
@@ -56,8 +57,8 @@ class BakeCache {
   std::filesystem::path folder_;
 };
 
-/// Makes `target` the same file as `source`, or a copy where links are not possible. What was at
-/// `target` is replaced in one step. Nothing is done where they are one file. Fails with kIo.
+/// Makes `target` a hard link to `source`, or a copy if links are not possible. Atomically replaces
+/// an existing `target`. Does nothing if the two are already the same file. Fails with kIo.
 [[nodiscard]] Result<void> linkOrCopy(const std::filesystem::path& source,
                                       const std::filesystem::path& target);
 

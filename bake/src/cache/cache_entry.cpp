@@ -13,8 +13,8 @@ namespace {
 
 using Json = OrderedJson;
 
-/// Raised whenever the entries' form changes, or what a bake makes of the same inputs without a new
-/// version of the program: older ones are then not found.
+/// Raise this if the form of entries changes, or if a bake makes something else of the same inputs
+/// without a new version of the program. Older entries are then ignored.
 constexpr int kEntryVersion = 5;
 
 Json jsonOf(const SourceFile& file) { return Json::array({file.name, file.bytes, hexOf(file)}); }
@@ -25,7 +25,7 @@ bool readHex(std::string_view text, std::uint64_t& value) {
   return problem == std::errc() && end == text.data() + text.size();
 }
 
-/// Throws what nlohmann::json throws on a value of another type.
+/// Throws what nlohmann::json throws if a value has another type.
 bool read(const Json& json, SourceFile& file) {
   constexpr std::size_t kDigits = 16;
   file.name = json.at(0).get<std::string>();
@@ -67,7 +67,7 @@ std::optional<CacheEntry> readCacheEntry(const std::filesystem::path& file) {
   if (!content) return std::nullopt;
   const auto bytes = content->bytes();
   const auto* text = reinterpret_cast<const char*>(bytes.data());
-  // Nobody but us writes entries, so that any offence means the same: there is none.
+  // Only encodeCacheEntry() writes entries, so any error just means that there is no entry.
   try {
     const Json json = Json::parse(text, text + bytes.size(), nullptr, /*allow_exceptions=*/false);
     return json.is_object() ? decode(json) : std::nullopt;

@@ -7,7 +7,7 @@
 
 namespace galactic::bake {
 
-/// What the cache remembers of one bake.
+/// What the cache stores about one bake.
 struct CacheEntry {
   BakeInputs inputs;
   /// Content of the pack.
@@ -18,7 +18,7 @@ struct CacheEntry {
 /// As JSON.
 [[nodiscard]] std::string encodeCacheEntry(const CacheEntry& entry);
 
-/// None where the file cannot be read, or is not what encodeCacheEntry writes.
+/// None if the file cannot be read or was not written by encodeCacheEntry.
 [[nodiscard]] std::optional<CacheEntry> readCacheEntry(const std::filesystem::path& file);
 
 }  // namespace galactic::bake

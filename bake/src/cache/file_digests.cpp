@@ -7,7 +7,7 @@
 namespace galactic::bake {
 namespace {
 
-/// One spelling for one file.
+/// The same spelling for all paths to a file, except through links.
 std::filesystem::path plain(const std::filesystem::path& file) {
   std::error_code problem;
   const auto absolute = std::filesystem::absolute(file, problem);
@@ -23,7 +23,7 @@ Result<SourceFile> FileDigests::of(const std::filesystem::path& file) {
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
   }
-  // Outside of the lock: other files need not wait. Two threads may read the same one.
+  // Outside the lock, so that other files need not wait. Two threads may read the same file.
   Result<SourceFile> digest = describeFile(key);
   if (digest) digest->name = file.generic_string();
   const std::lock_guard lock(mutex_);

@@ -8,14 +8,15 @@
 
 namespace galactic::bake {
 
-/// Sizes and hashes of files, each file read once however often it is asked for: what a file held
-/// when it was first looked at is what counts for the whole run. Thread-safe.
+/// Sizes and hashes of files. Each file is read only once, so the content at the first look counts
+/// for the whole run. Thread-safe.
 class FileDigests {
  public:
-  /// Its name is the path as given. Fails with kIo where the file cannot be read, each time.
+  /// The result's name is the path as given. Fails with kIo, on every call, if the file cannot be
+  /// read.
   [[nodiscard]] Result<SourceFile> of(const std::filesystem::path& file);
 
-  /// Whether the files below `folder` hold what was read, and what was absent still is.
+  /// Whether the files below `folder` still hold what was read, and absent files are still absent.
   [[nodiscard]] bool areAsRead(const ReadFiles& read, const std::filesystem::path& folder);
 
  private:

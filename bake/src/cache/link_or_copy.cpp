@@ -14,11 +14,11 @@ namespace fs = std::filesystem;
 
 enum class LinkEnd { kLinked, kImpossible, kFailed };
 
-/// Gives `source` the name `target`, under which it appears at once. A second name of its own is
-/// renamed, which replaces what is there.
+/// Atomically makes `target` a hard link to `source`: creates a link with a temporary name and
+/// renames it, which replaces an existing `target`.
 LinkEnd linkOnto(const fs::path& source, const fs::path& target, std::error_code& problem) {
-  // Renaming does nothing where another thread has just made the target the same file; then the
-  // part goes at the end.
+  // If another thread has just made the target the same file, renaming does nothing, and the
+  // destructor removes the part.
   const PartFile part = PartFile::linkedTo(source, target);
   if (part.error() != 0) return LinkEnd::kImpossible;
   fs::rename(part.path(), target, problem);
