@@ -7,20 +7,19 @@
 
 namespace galactic::bake {
 
-/// Rows of a strip: small enough that its working state stays in the second-level cache.
+/// Rows per strip: few enough that a strip's working state stays in the second-level cache.
 inline constexpr std::uint32_t kRowsPerStrip = 32;
 
-/// Calls `fill` for each strip of kRowsPerStrip rows on `threads` threads and joins their free
-/// spans in the order of the rows. `fill` adds the blocked heights of strip `index` to an empty
-/// strip.
+/// Calls `fill` for each strip of kRowsPerStrip rows on `threads` threads and joins the strips'
+/// free spans in row order. `fill` adds the blocked heights of strip `index` to an empty strip.
 [[nodiscard]] ExactColumns assembleColumns(
     const GridFrame& frame, unsigned threads, std::uint32_t strip_count,
     const std::function<void(std::uint32_t index, ColumnStrip& strip)>& fill);
 
-/// The columns of Coverage::kCell: free only where free over the whole square of the cell. Each
-/// triangle's interval is the closed form over the square, in double precision; the square and the
-/// interval are padded by kMergeTolerance and two parts in 2^23 of the grid's size, more than all
-/// later float rounding together, that of queries included.
+/// The columns of Coverage::kCell: a height is free only if it is free over the whole square of the
+/// cell. Each triangle's interval is computed in closed form over the square, in double precision.
+/// The square and the interval are padded by kMergeTolerance and two parts in 2^23 of the grid's
+/// size, which exceeds all later float rounding together, including that of queries.
 [[nodiscard]] ExactColumns cellColumns(const TriangleMesh& mesh, const GridFrame& frame,
                                        unsigned threads);
 

@@ -7,8 +7,8 @@
 namespace galactic::bake {
 namespace {
 
-/// The one comparison that decides whether a gap is free. In float arithmetic, as in the vectorised
-/// engine, so that all engines cut at the same heights.
+/// The only comparison that decides whether a gap is free. It uses float arithmetic, like the
+/// vectorized engine, so that all engines cut at the same heights.
 bool isGap(float below, float above) { return below + kMergeTolerance < above; }
 
 }  // namespace
@@ -18,8 +18,8 @@ std::uint64_t appendFreeSpans(std::span<BlockedInterval> blocked, Span heights,
   std::sort(blocked.begin(), blocked.end(),
             [](const BlockedInterval& a, const BlockedInterval& b) { return a.lo < b.lo; });
   std::uint64_t merged_gaps = 0;
-  // Everything up to here has been dealt with: the lower end of `heights`, then the highest end of
-  // the intervals passed.
+  // Everything up to this height is done: first the lower end of `heights`, then the highest end of
+  // the intervals so far.
   float reached = heights.lo;
   for (const BlockedInterval& interval : blocked) {
     const float top = std::min(interval.lo, heights.hi);

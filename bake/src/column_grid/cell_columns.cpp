@@ -13,8 +13,9 @@ namespace {
 /// Distance from `at` to the interval [lo, hi]; 0 inside.
 double distanceTo(double at, double lo, double hi) { return std::max({lo - at, at - hi, 0.0}); }
 
-/// What a square and its heights are padded by: the merge tolerance, and what a query loses when it
-/// computes the cell and the code of a center in floats, three roundings of up to `size`. Meters.
+/// The padding of a square and of its heights, meters: the merge tolerance, and the error of a
+/// query that computes the cell and the code of a center in floats, with three roundings of values
+/// up to `size`.
 double padOver(double size) {
   return static_cast<double>(kMergeTolerance) +
          2 * static_cast<double>(std::numeric_limits<float>::epsilon()) * size;
@@ -30,7 +31,7 @@ double padInHeight(const GridFrame& frame) {
   return padOver(std::max({hi - lo, std::abs(lo), std::abs(hi)}));
 }
 
-/// One triangle and the squares around columns' centers over which the ball is swept.
+/// Sweeps the ball over the squares around the columns' centers and scatters one triangle.
 class CellScatter {
  public:
   CellScatter(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t index)
@@ -63,7 +64,7 @@ class CellScatter {
   void addCell(std::uint32_t i, std::uint32_t k, ColumnStrip& strip) const {
     const double x = frame_.centerX(i);
     const double z = frame_.centerZ(k);
-    // The box of the triangle bounds what the triangle can block: most cells need no more.
+    // The triangle's box bounds what the triangle can block, which is enough for most cells.
     const double dx = distanceTo(x, min_[0] - half_, max_[0] + half_);
     const double dz = distanceTo(z, min_[2] - half_, max_[2] + half_);
     const double rest = radius() * radius() - dx * dx - dz * dz;
@@ -80,7 +81,7 @@ class CellScatter {
 
   const GridFrame& frame_;
   CellTriangle triangle_;
-  /// Half the edge of a square, and what its heights grow by.
+  /// Half the edge of a padded square, and the padding of its heights.
   double half_;
   double pad_;
   Point min_{};

@@ -7,13 +7,14 @@
 
 namespace galactic::bake {
 
-/// The cell that holds a place along an axis of a grid, which begins at `min`: less than 0 or more
-/// than it has where it lies outside. One rounding for all who ask, so that all find the same.
+/// The cell that holds the coordinate `at` along an axis of a grid that begins at `min`; negative
+/// or too large if `at` lies outside. All callers use this one rounding, so that they find the same
+/// cell.
 [[nodiscard]] inline double cellAlong(double at, float min, float spacing) {
   return std::floor((at - static_cast<double>(min)) / static_cast<double>(spacing));
 }
 
-/// The column in whose cell a point lies; none outside of the grid.
+/// The column whose cell holds a point; none outside the grid.
 [[nodiscard]] inline std::optional<std::size_t> columnAt(const Columns& columns, const Vec3& p) {
   const GridFrame& frame = columns.frame;
   const double i = cellAlong(static_cast<double>(p.x), frame.min_x, frame.spacing);
@@ -23,7 +24,7 @@ namespace galactic::bake {
   return columns.index(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
 }
 
-/// The cell along an axis of `count` cells that is nearest to a place.
+/// The cell nearest to the coordinate `at` along an axis of `count` cells.
 [[nodiscard]] inline std::uint32_t nearestCell(double at, float min, float spacing,
                                                std::uint32_t count) {
   return static_cast<std::uint32_t>(

@@ -9,14 +9,15 @@ namespace {
 
 constexpr float kEmptyLo = std::numeric_limits<float>::max();
 constexpr float kEmptyHi = std::numeric_limits<float>::lowest();
-/// What head_ has of a column without a list, and of one whose intervals are in tall_.
+/// The values of head_ for a column without a list, and for one whose intervals are in tall_.
 constexpr std::int32_t kNone = -1;
 constexpr std::int32_t kTall = -2;
-/// Longest list that is walked through: rooms have shorter ones, and 200,000 things above one
-/// another would take a time that grows with the square of their number.
+/// Longest list that is searched linearly. Rooms have shorter lists; with 200,000 things above one
+/// another, the time would grow with the square of their number.
 constexpr unsigned kMostWalked = 32;
 
-/// Takes those that overlap `added` out of disjoint intervals; returns all of them as one.
+/// Removes the intervals that overlap `added` from disjoint `intervals`, and returns them and
+/// `added` merged into one.
 BlockedInterval takeJoined(std::map<float, float>& intervals, BlockedInterval added) {
   auto first = intervals.lower_bound(added.lo);
   while (first != intervals.begin() && std::prev(first)->second >= added.lo) --first;

@@ -9,7 +9,8 @@
 namespace galactic::bake {
 namespace {
 
-/// Free height kept above and below the padded scene, so that its outside is one region.
+/// Free height above and below the padded scene, which connects everything outside into one region.
+/// Meters.
 constexpr double kHeightMargin = 0.01;
 
 struct Axis {
@@ -52,7 +53,7 @@ Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacin
   const double h = static_cast<double>(spacing);
   const Axis x = layOut(bounds.min.x, bounds.max.x, r + h, h);
   const Axis z = layOut(bounds.min.z, bounds.max.z, r + h, h);
-  // Compared in double: the product of absurd extents does not fit an integer.
+  // Compared in double, because the product of absurd extents does not fit an integer.
   const double padded_cells = (x.count + kTileColumnsX) * (z.count + kTileColumnsZ);
   if (!(padded_cells <= static_cast<double>(kMaxCells))) {
     return fail(

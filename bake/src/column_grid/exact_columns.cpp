@@ -14,11 +14,11 @@ namespace {
 
 using Corners = std::array<Point, 3>;
 
-/// From this size on, floats lose too much of a triangle, which reaches far from its own first
-/// corner: it is computed in double, column by column. Meters.
+/// Floats are too inaccurate for larger triangles, which reach far from their own first corner.
+/// These are computed in double, column by column. Meters.
 constexpr double kMostInFloats = 32;
 
-/// Where the columns' centers stand relative to the grid's corner: x split in two floats, so that
+/// The columns' centers relative to the grid's corner: x as a sum of two floats, so that
 /// differences to a triangle's corner lose nothing, and z in double.
 struct Centers {
   std::vector<float> x_high;
@@ -37,7 +37,8 @@ struct Centers {
   }
 };
 
-/// The extent in x of the part of a triangle between two values of z; lo > hi if there is none.
+/// The extent in x of the part of a triangle between two values of z; lo > hi if that part is
+/// empty.
 HeightInterval extentBetween(const Corners& corners, double min_z, double max_z) {
   HeightInterval extent{std::numeric_limits<double>::infinity(),
                         -std::numeric_limits<double>::infinity()};
@@ -82,8 +83,8 @@ class MeshScatter {
     }
     const ScatterTriangle triangle = prepareTriangle(corners, frame_.radius);
     const ScatterTarget target = targetOf(strip);
-    // The box of a small triangle is hardly bigger than the triangle grown by the radius; of a big
-    // one, each row takes only what it needs.
+    // The box of a small triangle is hardly bigger than the triangle grown by the radius. For a
+    // large triangle, each row takes only the columns that it needs.
     const double small = 4 * r + 8 * static_cast<double>(frame_.spacing);
     if (max_x - min_x < small || max_z - min_z < small) {
       scatter(triangle, box, target);
@@ -117,7 +118,7 @@ class MeshScatter {
     }
   }
 
-  /// From where the grid begins, in the plane.
+  /// The corners of a triangle relative to the grid's corner in the ground plane.
   [[nodiscard]] Corners cornersInGrid(std::uint32_t index) const {
     Corners corners = pointsOf(mesh_, mesh_.triangles[index]);
     for (Point& corner : corners) {

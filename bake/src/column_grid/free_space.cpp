@@ -79,38 +79,38 @@ Labels labelComponents(const Columns& columns) {
   return labels;
 }
 
-/// So much floor makes a room, square meters of places where a robot could stand.
+/// Least floor of a room: the area in which a robot could stand, square meters.
 constexpr double kLeastFloor = 4;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Length of the part of a span within heights.
+/// Length of the part of a span that lies within `heights`.
 double overlap(const Span& span, const Span& heights) {
   return std::max(0.0, static_cast<double>(std::min(span.hi, heights.hi)) -
                            static_cast<double>(std::max(span.lo, heights.lo)));
 }
 
-/// Length of the part of a span within the scene's heights.
+/// Length of the part of a span that lies within the scene's heights.
 double overlap(const Span& span, const Bounds& scene) {
   return overlap(span, Span{scene.min.y, scene.max.y});
 }
 
-/// Whether a column in the scene's bounds lies at their edge, in the plane.
+/// Whether a column within the scene's bounds lies at their edge in the ground plane.
 bool isAtEdge(float x, float z, const Bounds& scene, float spacing) {
   return x - scene.min.x < spacing || scene.max.x - x < spacing || z - scene.min.z < spacing ||
          scene.max.z - z < spacing;
 }
 
-/// What the spans of a column share.
+/// The properties of a column that its spans share.
 struct ColumnPlace {
   float x = 0;
   float z = 0;
   /// Square meters.
   double area = 0;
-  /// Of the grid.
+  /// At the border of the grid.
   bool is_at_border = false;
   bool is_in_scene = false;
-  /// Of the scene.
+  /// At the edge of the scene's bounds.
   bool is_at_edge = false;
 };
 
@@ -162,7 +162,7 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
   const std::vector<StandingRoom> rooms = standingRoom(columns, labels.of_span, labels.count);
   for (std::size_t n = 0; n < components.size(); ++n) {
     Component& component = components[n];
-    // Within walls a room without a ceiling is one; else what is under the sky is the outside.
+    // Walls make a room even without a ceiling. Otherwise, what is under the sky is outside.
     const bool is_walled = component.columns_at_edge == 0;
     component.floor = rooms[n].roofed + (is_walled ? rooms[n].open : 0);
     component.yard = is_walled ? 0 : rooms[n].open;
@@ -170,7 +170,7 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
   return components;
 }
 
-/// Whether one component is rather the room than another.
+/// Whether `first` is more likely to be the room than `second`.
 bool isRather(const Component& first, const Component& second) {
   const auto floor = [](const Component& of) { return of.floor < kLeastFloor ? 0 : of.floor; };
   if (floor(first) != floor(second)) return floor(first) > floor(second);
@@ -193,7 +193,7 @@ tl::unexpected<Error> seedFailure(const Vec3& seed, const GridFrame& frame,
 Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
   const GridFrame& frame = columns.frame;
   const std::optional<std::size_t> found = columnAt(columns, seed);
-  // Between the scene and the grid's border nothing is room.
+  // Between the scene and the grid's border, there is no room.
   const Bounds scene = sceneBounds(frame);
   const bool in_scene = seed.x >= scene.min.x && seed.x <= scene.max.x && seed.z >= scene.min.z &&
                         seed.z <= scene.max.z;
@@ -211,9 +211,9 @@ Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
   return seedFailure(seed, frame, free);
 }
 
-/// Of each component, the length of its spans that lies within the scene's heights and, in the
-/// nearest columns, in `room`, as a share of all that lies there. A scene without a height, such as
-/// a floor, has no span in it: there, of what lies within the heights of the grid of `room`.
+/// For each component, the share of its spans' length within the scene's heights that is also in
+/// `room`, in the nearest columns. A scene without height, such as a floor, contains no spans, so
+/// the heights of the grid of `room` are used instead.
 std::vector<double> sharesIn(const Columns& columns, const Labels& labels, const Columns& room) {
   const GridFrame& frame = columns.frame;
   const GridFrame& other = room.frame;
@@ -242,7 +242,7 @@ std::vector<double> sharesIn(const Columns& columns, const Labels& labels, const
   return inside;
 }
 
-/// Which components are the room.
+/// Which components belong to the room.
 Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labels,
                                       const std::vector<Component>& components,
                                       const FreeSpaceOptions& options, const Columns* wider_room) {

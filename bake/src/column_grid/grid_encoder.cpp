@@ -10,7 +10,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Codes of one span, rounded to the blocked side; lo > hi where no code lies in it.
+/// Codes of one span, rounded toward the blocked side; lo > hi if no code lies in the span.
 struct Codes {
   std::int64_t lo = 0;
   std::int64_t hi = -1;
@@ -23,7 +23,7 @@ class Quantizer {
     const double range = static_cast<double>(heights.hi) - base_;
     const double fitting = range / static_cast<double>(kMaxCode);
     tall_ = fitting > static_cast<double>(kMaxQuantum);
-    // Rounded up to the next float, so that the whole range has codes.
+    // Rounded up to the next float, so that the codes span the whole range.
     quantum_ =
         tall_ ? kMaxQuantum
               : std::nextafter(static_cast<float>(fitting), std::numeric_limits<float>::infinity());
@@ -35,7 +35,7 @@ class Quantizer {
   [[nodiscard]] bool tall() const { return tall_; }
 
   [[nodiscard]] Codes encode(const Span& span) const {
-    // Heights are not below the base: truncation is the floor, without a call into the library.
+    // Heights are not below the base, so truncation is the floor without a library call.
     const double lo = (static_cast<double>(span.lo) - base_) * inverse_;
     const double hi = (static_cast<double>(span.hi) - base_) * inverse_;
     const auto floor_of_lo = static_cast<std::int64_t>(lo);
@@ -50,10 +50,10 @@ class Quantizer {
   bool tall_ = false;
 };
 
-/// What a cell needs to know of its column: at most two spans fit in it.
+/// What a cell stores of its column, which has room for at most two spans.
 struct CodedColumn {
   std::array<Codes, 2> codes;
-  /// Spans that hold at least one code.
+  /// Number of spans that contain at least one code.
   std::uint32_t count = 0;
   /// Highest code of all spans.
   std::int64_t highest = 0;
@@ -78,7 +78,7 @@ class GridEncoder {
   }
 
  private:
-  /// Spans of the column of each cell of a tile; none beyond the grid's border.
+  /// The spans of the column of each cell in a tile; none beyond the grid's border.
   using TileSpans = std::array<std::span<const Span>, kCellsPerTile>;
 
   [[nodiscard]] TileSpans spansOf(std::uint32_t tile_x, std::uint32_t tile_z) const {
@@ -121,7 +121,7 @@ class GridEncoder {
     return column;
   }
 
-  /// The offset of a tile's codes: that of its lowest span, remembered in the grid.
+  /// Chooses the offset of a tile's codes, that of its lowest span, and stores it in the grid.
   std::int64_t chooseBase(const std::array<CodedColumn, kCellsPerTile>& coded) {
     constexpr std::int64_t kHighest = std::numeric_limits<std::uint16_t>::max();
     std::int64_t lowest = kHighest * kCodesPerTileBase;

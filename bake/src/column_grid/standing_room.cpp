@@ -6,12 +6,12 @@
 namespace galactic::bake {
 namespace {
 
-/// Between surfaces, meters: centers of spheres stay their radius away from both.
+/// Between the surfaces, meters; the centers of spheres stay one radius away from both.
 constexpr float kHeight = 1.2F;
 /// From the middle of the square to its sides, meters.
 constexpr float kHalfWidth = 0.4F;
 
-/// Columns of one component: (i, k), row by row.
+/// A column of one component. Lists of them are in row order.
 struct Cell {
   std::uint32_t i = 0;
   std::uint32_t k = 0;
@@ -20,7 +20,8 @@ struct Cell {
 };
 using Cells = std::vector<Cell>;
 
-/// How many of the cells are in the middle of a square of cells, `reach` to each side.
+/// How many of the cells are the middle of a full square of cells that extends `reach` to each
+/// side.
 std::size_t middles(const Cells& cells, std::uint32_t reach) {
   const std::uint32_t side = 2 * reach + 1;
   if (cells.size() < std::size_t{side} * side) return 0;
@@ -30,7 +31,7 @@ std::size_t middles(const Cells& cells, std::uint32_t reach) {
     least = {std::min(least.i, cell.i), std::min(least.k, cell.k)};
     most = {std::max(most.i, cell.i), std::max(most.k, cell.k)};
   }
-  // Sums over all cells before a place, in both directions.
+  // Summed-area table of the cells.
   const std::size_t width = most.i - least.i + 2;
   const std::size_t rows = most.k - least.k + 2;
   std::vector<std::uint32_t> sums(width * rows);
@@ -79,7 +80,7 @@ std::vector<StandingRoom> standingRoom(const Columns& columns,
         const float above = std::min(heights.hi + frame.radius, scene.max.y);
         if (!has_floor || above - below < kHeight) continue;
         Cells& cells = (heights.hi < scene.max.y ? roofed : open)[component_of_span[span]];
-        // Of two stories of one component the lower one.
+        // If a component has two stories in a column, the column counts once.
         if (cells.empty() || cells.back() != Cell{i, k}) cells.push_back({i, k});
       }
     }

@@ -9,14 +9,14 @@ namespace {
 
 // A triangle grown by a ball is the union of convex pieces: a ball at each corner, a cylinder along
 // each edge, and the prism that the face sweeps when it moves by the radius along its normal. A
-// vertical line meets each piece in one interval, and their hull is the answer. Every piece is
-// computed so that its ends lie within rounding of the grown triangle, however thin or steep the
-// triangle is; what a badly conditioned piece loses, its neighbors cover.
+// vertical line meets each piece in one interval, and the hull of these intervals is the result.
+// The ends of every piece lie within rounding of the grown triangle, however thin or steep the
+// triangle is. What a badly conditioned piece loses, its neighbors cover.
 
 using Corners = std::array<Point, 3>;
 
-/// A triangle whose altitude is smaller than this part of its longest edge has no usable normal;
-/// its edges cover it to within far less than rounding.
+/// A triangle whose altitude is smaller than this share of its longest edge has no usable normal.
+/// Its edges cover it to within far less than rounding.
 constexpr double kFlatness = 1e-12;
 
 Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -31,8 +31,8 @@ Point cross(const Point& a, const Point& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The triangle with its first corner at the origin: rounding then follows the triangle's size, not
-/// its place in the world.
+/// The triangle with its first corner at the origin, so that rounding depends on the triangle's
+/// size and not on its position in the world.
 Corners relativeToFirstCorner(const Corners& triangle) {
   return {Point{0, 0, 0}, minus(triangle[1], triangle[0]), minus(triangle[2], triangle[0])};
 }
@@ -94,7 +94,8 @@ std::optional<Face> makeFace(const Corners& triangle) {
   const Point apex = minus(triangle[(longest + 2) % 3], frame.origin);
   frame.foot = dot(apex, frame.along);
   Point altitude = plusScaled(apex, -frame.foot, frame.along);
-  // Once more: on a needle the first subtraction leaves rounding of the size of the altitude.
+  // Orthogonalize again: on a needle, the rounding of the first subtraction is as large as the
+  // altitude.
   altitude = plusScaled(altitude, -dot(altitude, frame.along), frame.along);
   frame.height = std::sqrt(dot(altitude, altitude));
   if (!(frame.height > kFlatness * frame.length)) return std::nullopt;
@@ -126,8 +127,8 @@ void addCorner(const Point& corner, Line line, double radius, Hull& hull) {
   hull.add(corner[1] - half, corner[1] + half);
 }
 
-/// Cylinder along an edge, cut off square at both ends. A vertical edge adds nothing: the balls at
-/// its corners have the same hull.
+/// Cylinder along an edge, cut off perpendicularly at both ends. A vertical edge adds nothing,
+/// because the balls at its corners have the same hull.
 void addEdge(const Edge& edge, Line line, double radius, Hull& hull) {
   if (!(edge.run > 0)) return;
   const double qx = line.x - edge.from[0];
@@ -140,7 +141,7 @@ void addEdge(const Edge& edge, Line line, double radius, Hull& hull) {
   const double middle = edge.from[1] + along * edge.slope;
   const double half = std::sqrt(rest) * edge.stretch;
   Clip clip{middle - half, middle + half};
-  // Between the planes square to the edge through its ends.
+  // Between the planes perpendicular to the edge through its ends.
   const double rise = edge.edge[1];
   const double start = along * edge.run - edge.from[1] * rise;
   clip.keepPositive(start, rise);
@@ -148,7 +149,7 @@ void addEdge(const Edge& edge, Line line, double radius, Hull& hull) {
   if (clip.lo < clip.hi) hull.add(clip.lo, clip.hi);
 }
 
-/// Prism: the face moved by up to the radius to both sides along its normal.
+/// Prism that the face sweeps when it moves by the radius to both sides along its normal.
 void addFace(const Face& face, Line line, double radius, Hull& hull) {
   const Point foot = minus({line.x, 0, line.z}, face.origin);
   const double off = dot(face.normal, foot);
@@ -166,7 +167,7 @@ void addFace(const Face& face, Line line, double radius, Hull& hull) {
   if (clip.lo < clip.hi) hull.add(clip.lo, clip.hi);
 }
 
-/// All pieces of a grown triangle on one line, which is relative to the first corner, too.
+/// Adds all pieces of a grown triangle on one line, which is also relative to the first corner.
 void addTriangle(const PreparedTriangle& triangle, Line line, double radius, Hull& hull) {
   for (std::size_t k = 0; k < 3; ++k) {
     addCorner(triangle.corners[k], line, radius, hull);
@@ -180,38 +181,39 @@ std::optional<HeightInterval> inWorld(const Hull& hull, double height) {
   return HeightInterval{hull.lo + height, hull.hi + height};
 }
 
-/// A square of centers of balls.
+/// A square of ball centers.
 struct Cell {
   Line center;
   double half = 0;
   double radius = 0;
 };
 
-/// The center of the cell nearest to a corner reaches furthest up and down on its ball.
+/// Of all centers in the cell, the one nearest to the corner reaches farthest up and down on the
+/// ball around it.
 void addCornerOverCell(const Point& corner, const Cell& cell, Hull& hull) {
   const double dx = std::max(std::abs(cell.center.x - corner[0]) - cell.half, 0.0);
   const double dz = std::max(std::abs(cell.center.z - corner[2]) - cell.half, 0.0);
   addCorner(corner, {corner[0] + dx, corner[2] + dz}, cell.radius, hull);
 }
 
-/// Where a center on one side of the cell touches the edge with a contact normal square to both: a
-/// height can be extreme there between the cell's corners. `side_axis` (0 or 2) is the axis along
-/// which the side runs.
+/// Adds the heights at which a center on a side of the cell touches the edge with a contact normal
+/// perpendicular to both side and edge. There, a height can be extreme between the cell's corners.
+/// `side_axis` (0 or 2) is the axis along which the side runs.
 void addEdgeOverSide(const Edge& of, const CellTriangle::SideNormal& normal, const Cell& cell,
                      std::size_t side_axis, Hull& hull) {
   const std::size_t across_axis = 2 - side_axis;
   const Point& from = of.from;
   const Point& edge = of.edge;
   const std::array<double, 3> center{cell.center.x, 0, cell.center.z};
-  // An edge that runs in a plane square to the side's offset has a horizontal normal (or, parallel
-  // to the side, is covered by the sides across it): no extreme height.
+  // Without extent across the side, the edge has a horizontal contact normal (or, parallel to the
+  // side, is covered by the sides across it), so no height is extreme.
   const double across = edge[across_axis];
   if (across == 0) return;
   for (const double side : {-cell.half, cell.half}) {
     const double gap = center[across_axis] + side - from[across_axis];
     for (const double reach : {-cell.radius, cell.radius}) {
       const double offset = gap - reach * normal.across;
-      // Most sides touch the edge's line beyond its ends, which is known without the division.
+      // Most sides touch the edge's line beyond its ends, which this finds without a division.
       const double forward = across < 0 ? -offset : offset;
       if (!(forward >= 0 && forward <= std::abs(across))) continue;
       const double part = offset / across;
@@ -262,9 +264,9 @@ CellTriangle::CellTriangle(const std::array<Point, 3>& triangle) : prepared(tria
 
 std::optional<HeightInterval> touchingHeightsOverCell(const CellTriangle& triangle, double x,
                                                       double z, double half, double radius) {
-  // The upper (lower) end over the square of centers is a concave (convex) function: its extreme
+  // Over the square of centers, the upper (lower) end is a concave (convex) function. Its extreme
   // lies over a corner of the triangle, at a corner of the square, or on a side of the square where
-  // an edge's contact normal is square to that side.
+  // an edge's contact normal is perpendicular to that side.
   const PreparedTriangle& prepared = triangle.prepared;
   const Cell cell{{x - prepared.first[0], z - prepared.first[2]}, half, radius};
   Hull hull;

@@ -26,31 +26,32 @@ struct HeightInterval {
 };
 
 /// The heights at which the center of a ball of `radius` on the vertical line through (x, z) is
-/// strictly closer than `radius` to the triangle; none if there are none. It is one open interval
-/// because triangle and ball are convex: the hull of what its corners (spheres), edges (cylinders)
-/// and face (two offset planes) give. Scalar double-precision reference of the vectorised engine.
+/// strictly closer than `radius` to the triangle; none if there are none. They form one open
+/// interval because triangle and ball are convex: the hull of the intervals of its corners
+/// (spheres), edges (cylinders) and face (two offset planes). This is the scalar double-precision
+/// reference for the vectorized engine.
 [[nodiscard]] std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triangle,
                                                             double x, double z, double radius);
 
-/// What intervals on many lines need of one triangle.
+/// The quantities of a triangle that all vertical lines share.
 struct PreparedTriangle {
   /// From a corner to the next one.
   struct Edge {
     Point from{};
     Point edge{};
-    /// In the plane: how far it goes, and its unit direction there; 0 of a vertical edge.
+    /// Horizontal length and unit direction in the ground plane; 0 for a vertical edge.
     double run = 0;
     double x = 0;
     double z = 0;
     double length = 0;
-    /// Height and length by run.
+    /// Rise per `run`, and `length` per `run`.
     double slope = 0;
     double stretch = 0;
   };
 
   /// Coordinates in a triangle's plane: along its longest edge, and along the altitude on that
-  /// edge. In them the corners are (0, 0), (length, 0) and (foot, height). Unlike the cross product
-  /// of two edges, this stays perpendicular to the longest edge on needles.
+  /// edge. The corners are at (0, 0), (length, 0) and (foot, height). Unlike a cross product of two
+  /// edges, the normal stays perpendicular to the longest edge even on needles.
   struct Face {
     Point origin{};
     Point along{};
@@ -63,8 +64,8 @@ struct PreparedTriangle {
 
   explicit PreparedTriangle(const std::array<Point, 3>& triangle);
 
-  /// What all else is relative to, so that rounding follows the triangle's size, not its place in
-  /// the world.
+  /// The origin of all other members, so that rounding depends on the triangle's size and not on
+  /// its position in the world.
   Point first;
   std::array<Point, 3> corners;
   std::array<Edge, 3> edges;
@@ -72,10 +73,10 @@ struct PreparedTriangle {
   std::optional<Face> face;
 };
 
-/// What intervals over many cells need of one triangle.
+/// The quantities of a triangle that all cells share.
 struct CellTriangle {
-  /// Of an edge, at a right angle to it and to the x or the z axis: how far it goes along the other
-  /// one of these, and up. 0 where the edge does not go along that one.
+  /// The direction perpendicular to an edge and to the x or the z axis: its component along the
+  /// other of these two axes, and upward. 0 if the edge does not extend along that other axis.
   struct SideNormal {
     double across = 0;
     double up = 0;
@@ -84,18 +85,18 @@ struct CellTriangle {
   explicit CellTriangle(const std::array<Point, 3>& triangle);
 
   PreparedTriangle prepared;
-  /// By edge: at a right angle to the x axis, and to the z axis.
+  /// For each edge, the normals perpendicular to the x axis and to the z axis.
   std::array<std::array<SideNormal, 2>, 3> side_normals{};
 };
 
-/// The same for a center anywhere over the square of half edge `half` around (x, z): the heights at
-/// which some center in the square touches.
+/// The heights at which a ball touches the triangle with its center anywhere in the square of half
+/// edge `half` around (x, z).
 [[nodiscard]] std::optional<HeightInterval> touchingHeightsOverCell(const CellTriangle& triangle,
                                                                     double x, double z, double half,
                                                                     double radius);
 
-/// Squared distance from `point` to the triangle: the least over its edges, and its plane where the
-/// foot lies inside. Safe on needles, where the usual barycentric closest point is not.
+/// Squared distance from `point` to the triangle: the least over its edges and, if the foot lies
+/// inside, its plane. Safe on needles, unlike the usual barycentric closest point.
 [[nodiscard]] double squaredDistance(const Point& point, const std::array<Point, 3>& triangle);
 
 }  // namespace galactic::bake

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
-/// The spans of a room as nodes: those that overlap in height, in neighboring columns, are linked.
+/// A graph of a room's spans. Spans of neighboring columns are linked if they overlap in height.
 class SpanGraph {
  public:
   explicit SpanGraph(const Columns& room)
@@ -40,7 +40,7 @@ class SpanGraph {
     float width = 0;
     std::uint32_t to = 0;
     WayOut narrowest;
-    /// Ties go to the first span, so that the result depends on the room only.
+    /// Ties go to the first span, so that the result depends only on the room.
     friend bool operator<(const Step& a, const Step& b) {
       return a.width != b.width ? a.width < b.width : a.to > b.to;
     }
@@ -63,8 +63,8 @@ class SpanGraph {
            at.z > scene_.max.z || heights.lo > scene_.max.y || heights.hi < scene_.min.y;
   }
 
-  /// Calls `each(neighbor)` for the linked spans of one side; whether there are any, or the grid
-  /// ends there.
+  /// Calls `each(neighbor)` for the linked spans on one side. Returns whether there are any or the
+  /// grid ends there.
   template <class Each>
   bool visitSide(std::uint32_t span, int side, const Each& each) const {
     constexpr std::array<std::array<int, 2>, 4> kSides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
@@ -87,7 +87,8 @@ class SpanGraph {
            std::max(room_.spans[a].lo, room_.spans[b].lo);
   }
 
-  /// How far each span is from one that something bounds to a side, meters.
+  /// Measures the horizontal distance of each span to the nearest one that is blocked on a side,
+  /// meters.
   void measureClearance() {
     std::vector<std::uint32_t> front;
     for (std::uint32_t span = 0; span < clearance_.size(); ++span) {
@@ -112,7 +113,7 @@ class SpanGraph {
     }
   }
 
-  /// Where a way from `from` to `to` is as narrow as the link between them.
+  /// The place and width of the link from `from` to `to`.
   [[nodiscard]] WayOut linkOf(std::uint32_t from, std::uint32_t to) const {
     const float lo = std::max({room_.spans[from].lo, room_.spans[to].lo, scene_.min.y});
     const float hi = std::min({room_.spans[from].hi, room_.spans[to].hi, scene_.max.y});
@@ -124,7 +125,7 @@ class SpanGraph {
   const Columns& room_;
   Bounds scene_;
   std::vector<std::uint32_t> column_of_;
-  /// Meters; nothing bounds what is infinitely far from it.
+  /// Meters; kUnbounded if nothing blocks the way.
   std::vector<float> clearance_;
 };
 
@@ -152,7 +153,7 @@ std::vector<std::uint32_t> SpanGraph::roomiest() const {
 
 std::optional<WayOut> SpanGraph::wayOutFrom(std::span<const std::uint32_t> starts) const {
   std::vector<bool> is_done(room_.spans.size(), false);
-  // The widest way to each span that is known so far.
+  // Width of the widest way to each span found so far.
   std::vector<float> widest(room_.spans.size(), 0);
   std::priority_queue<Step> open;
   for (const std::uint32_t start : starts) {

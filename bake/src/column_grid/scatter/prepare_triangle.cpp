@@ -8,9 +8,9 @@ namespace {
 
 using Corner = std::array<double, 3>;
 
-/// A horizontal length under this makes an edge vertical, meters.
+/// An edge with a smaller horizontal length counts as vertical, meters.
 constexpr double kVerticalLength = 1e-7;
-/// A unit normal with a smaller y makes a face vertical.
+/// A face whose unit normal has a smaller y counts as vertical.
 constexpr double kVerticalNormal = 1e-6;
 
 float asFloat(double value) { return static_cast<float>(value); }
@@ -28,7 +28,7 @@ void prepareFace(const Corner& b, const Corner& c, ScatterTriangle& out) {
   out.inverse_normal_y = asFloat(1 / (normal[1] * scale));
 }
 
-/// `side` is +1 or -1: the sense of the corners seen from above.
+/// `side` is +1 or -1: the winding of the corners as seen from above.
 ScatterEdge prepareEdge(const Corner& start, const Corner& end, double side,
                         const ScatterTriangle& triangle, float radius) {
   ScatterEdge edge;
@@ -52,7 +52,8 @@ ScatterEdge prepareEdge(const Corner& start, const Corner& end, double side,
   edge.start_y = asFloat(start[1]);
   edge.slope = asFloat(dy / ground);
   edge.secant = asFloat(length / ground);
-  // An almost level edge is cut off by almost vertical planes: far away in height, but finite.
+  // The planes that cut off an almost level edge are almost vertical. This keeps their heights
+  // finite, though far away.
   constexpr double kLevelSine = 1e-8;
   double sine = dy / length;
   if (std::abs(sine) < kLevelSine) sine = sine < 0 ? -kLevelSine : kLevelSine;
@@ -87,7 +88,8 @@ ScatterTriangle prepareTriangle(const std::array<std::array<double, 3>, 3>& corn
   out.min_z = std::min({out.corner_z[0], out.corner_z[1], out.corner_z[2]});
   out.max_z = std::max({out.corner_z[0], out.corner_z[1], out.corner_z[2]});
   prepareFace(local[1], local[2], out);
-  // Positive where the corners run clockwise in (x, z): then the inside lies at positive distances.
+  // The sign of the winding in (x, z). With it as `side`, the triangle's inside has positive
+  // distances.
   const double sense = local[1][2] * local[2][0] - local[1][0] * local[2][2];
   const double side = sense < 0 ? -1 : 1;
   for (std::size_t i = 0; i < 3; ++i) {

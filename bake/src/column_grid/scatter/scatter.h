@@ -6,8 +6,8 @@ namespace galactic::bake {
 
 class ColumnStrip;
 
-/// What the vectorised kernel needs to know of one edge, in the frame of the triangle's first
-/// corner. Distances are signed in the ground plane, positive on the triangle's side.
+/// What the vectorized kernel needs of one edge, in the frame of the triangle's first corner.
+/// Distances are signed and measured in the ground plane, positive on the triangle's side.
 struct ScatterEdge {
   /// Distance from the edge's line: distance_x * X + distance_z * Z + distance_0.
   float distance_x = 0;
@@ -21,20 +21,20 @@ struct ScatterEdge {
   float start_y = 0;
   float slope = 0;
   float secant = 0;
-  /// Heights between the planes that cut the cylinder off at the ends: start_y - cotangent * along
-  /// and that plus end_rise.
+  /// The planes that cut off the cylinder at its ends bound the heights: one at start_y - cotangent
+  /// * along, the other at end_rise above it.
   float cotangent = 0;
   float end_rise = 0;
-  /// How far the raised face's border is shifted towards the inside.
+  /// How far the border of the raised face is shifted inward.
   float face_shift = 0;
   /// A vertical edge adds nothing to its two corners.
   bool vertical = false;
 };
 
-/// One triangle prepared for the vectorised kernel (docs/column_grids.md derives the formulas).
-/// All but `origin_*` is relative to the first corner, which keeps floats accurate.
+/// One triangle prepared for the vectorized kernel (docs/column_grids.md derives the formulas). All
+/// but `origin_*` is relative to the first corner, which keeps floats accurate.
 struct ScatterTriangle {
-  /// First corner relative to the grid's corner, as the sum of two floats; and its height.
+  /// First corner relative to the grid's corner, with x as the sum of two floats, and its height.
   float origin_x_high = 0;
   float origin_x_low = 0;
   double origin_z = 0;
@@ -50,7 +50,7 @@ struct ScatterTriangle {
   float inverse_normal_y = 0;
   /// A vertical face adds nothing to its edges.
   bool has_face = false;
-  /// Box of the corners.
+  /// Bounding box of the corners.
   float min_x = 0;
   float max_x = 0;
   float min_y = 0;
@@ -74,10 +74,10 @@ struct ScatterTarget {
   float* lo = nullptr;
   float* hi = nullptr;
   std::uint32_t first_row = 0;
-  /// Elements from one row to the next.
+  /// Number of elements from one row to the next.
   std::uint64_t stride = 0;
-  /// x of the columns' centers relative to the grid's corner, as sums of two floats, as long as the
-  /// rows; z of all rows' centers relative to it.
+  /// Centers relative to the grid's corner: x of the columns as sums of two floats, as many as a
+  /// row has elements, and z of all rows.
   const float* x_high = nullptr;
   const float* x_low = nullptr;
   const double* z = nullptr;
@@ -87,7 +87,7 @@ struct ScatterTarget {
 /// ColumnStrip::spill, callable without its header.
 void spillInto(ColumnStrip& strip, std::uint32_t row, std::uint32_t column, float lo, float hi);
 
-/// Adds to a strip the blocked heights of one triangle in a block of columns.
+/// Adds the blocked heights of one triangle in a block of columns to a strip.
 using ScatterFunction = void (*)(const ScatterTriangle& triangle, const ScatterBlock& block,
                                  float radius, const ScatterTarget& target);
 
@@ -98,8 +98,8 @@ void scatterAvx2(const ScatterTriangle& triangle, const ScatterBlock& block, flo
 void scatterAvx512(const ScatterTriangle& triangle, const ScatterBlock& block, float radius,
                    const ScatterTarget& target);
 
-/// The kernels for narrow blocks (up to kNarrowColumns) and wide ones on this processor; all
-/// kernels give the same bits.
+/// The fastest kernels on this processor for narrow blocks (up to kNarrowColumns) and for wide
+/// ones. All kernels give the same bits.
 struct ScatterFunctions {
   ScatterFunction narrow = scatterPortable;
   ScatterFunction wide = scatterPortable;
@@ -107,8 +107,8 @@ struct ScatterFunctions {
 inline constexpr std::uint32_t kNarrowColumns = 8;
 [[nodiscard]] ScatterFunctions fastestScatter();
 
-/// Prepares a triangle for the vectorised kernel. `corners` in double, relative to the grid's
-/// corner (min_x, 0, min_z); `radius` in meters.
+/// Prepares a triangle for the vectorized kernel. `corners` are relative to the grid's corner
+/// (min_x, 0, min_z); `radius` is in meters.
 [[nodiscard]] ScatterTriangle prepareTriangle(const std::array<std::array<double, 3>, 3>& corners,
                                               float radius);
 

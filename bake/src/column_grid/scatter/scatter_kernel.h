@@ -1,5 +1,5 @@
 #pragma once
-// The vectorised heart of the exact engine, included by one source file per instruction set.
+// The vectorized core of the exact engine, included by one source file per instruction set.
 #include "column_grid/scatter/scatter.h"
 #include "column_grid/scatter/simd.h"
 
@@ -51,16 +51,15 @@ inline Floats includeEdge(const ScatterEdge& edge, Floats x, float z, float radi
   return distance;
 }
 
-/// How far a column is inside the borders of the face raised, and of the face lowered, along its
-/// normal: negative outside.
+/// How far a column is inside the borders of the raised and of the lowered face; negative outside.
 struct FaceInside {
   Floats raised;
   Floats lowered;
 };
 
-/// The prism between the face raised and lowered along its normal by the radius. A column meets the
-/// raised face when it is inside all three of its shifted borders, and so for the lowered one;
-/// where only one of them is met, the height at the face itself bounds the other side.
+/// The prism between the faces raised and lowered along the normal by the radius. A column meets
+/// the raised face if it is inside all three shifted borders of that face, and likewise for the
+/// lowered one. If it meets only one of them, the height at the face itself bounds the other side.
 inline void includeFace(const ScatterTriangle& triangle, Floats x, float z, float radius,
                         const FaceInside& inside, Heights& heights) {
   const Floats zero = broadcast(0);
@@ -98,9 +97,10 @@ inline Heights touchingHeights(const ScatterTriangle& triangle, Floats x, float 
   return heights;
 }
 
-/// Which lanes may still gain: those within the radius of the triangle's box whose current interval
-/// does not yet cover all that the box could block. One root decides where the exact heights need
-/// six. The decision is made lane by lane, so it does not depend on the width of the vectors.
+/// The lanes that the triangle may still extend: those within the radius of its box whose current
+/// interval does not yet cover all that the box could block. This takes one square root, the exact
+/// heights six. Each lane is decided alone, so the result does not depend on the width of the
+/// vectors.
 inline Mask mayGain(const ScatterTriangle& triangle, Floats x, float z, float radius,
                     Heights current) {
   const Floats zero = broadcast(0);
@@ -120,8 +120,8 @@ inline Floats laneNumbers() {
   return load(kNumbers);
 }
 
-/// Extends the current intervals of the columns at `lo` and `hi` by `add` in the lanes of `lanes`;
-/// returns the lanes whose interval is disjoint from the current one.
+/// Extends the current intervals of the columns at `lo` and `hi` by `add` in the lanes of `lanes`.
+/// Returns the lanes whose added interval is disjoint from the current one.
 inline unsigned extend(Heights add, Mask lanes, float* lo, float* hi) {
   const Heights current{load(lo), load(hi)};
   const Mask valid = both(lanes, less(add.lo, add.hi));

@@ -1,11 +1,11 @@
 #pragma once
 // Float vectors of the width that the including file is compiled for: 16 lanes with AVX-512, 8 with
-// AVX2, 4 otherwise (plain C++ where there is no SSE either). Only IEEE operations that round each
-// lane alone are offered, and no fused ones, so every width computes the same bits.
+// AVX2, 4 otherwise (in plain C++ without SSE). There are only IEEE operations that round each lane
+// alone, and no fused ones, so every width computes the same bits.
 //
-// Everything is in an unnamed namespace (constants too, which the linter dislikes) and nothing of
-// the standard library is used: a function compiled here for AVX must never be the one that the
-// linker picks for the rest of the program.
+// Everything, even constants (which the linter dislikes), is in an unnamed namespace, and nothing
+// of the standard library is used: the linker must never pick a function that was compiled here for
+// AVX for the rest of the program.
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif

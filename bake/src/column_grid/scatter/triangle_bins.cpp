@@ -6,7 +6,7 @@
 namespace galactic::bake {
 namespace {
 
-/// In cells. Widening by it costs nothing: columns out of reach are rejected one by one later.
+/// In cells. The extra width is cheap, because columns out of reach are rejected one by one later.
 constexpr double kIndexMargin = 1e-3;
 
 }  // namespace
@@ -14,7 +14,7 @@ constexpr double kIndexMargin = 1e-3;
 IndexRange centersWithin(double lo, double hi, double spacing, std::uint32_t count) {
   const double limit = static_cast<double>(count);
   const double inverse = 1 / spacing;
-  // Truncation is the floor of what is not negative, and without a call into the maths library.
+  // The values are not negative, so truncation is the floor without a library call.
   const double first = std::max(lo * inverse + (0.5 - kIndexMargin), 0.0);
   const double end = std::min(hi * inverse + (0.5 + kIndexMargin), limit);
   if (!(first < end)) return {};

@@ -8,21 +8,21 @@
 
 namespace galactic::bake {
 
-/// Rows or columns first up to, not including, end.
+/// Rows or columns first to end - 1.
 struct IndexRange {
   std::uint32_t first = 0;
   std::uint32_t end = 0;
 };
 
-/// Those of `count` centers at (index + 0.5) * spacing that lie within [lo, hi], and perhaps one
-/// more at either end: rounding loses none.
+/// Which of `count` centers at (index + 0.5) * spacing lie within [lo, hi]. There may be one more
+/// at either end, so that rounding loses none.
 [[nodiscard]] IndexRange centersWithin(double lo, double hi, double spacing, std::uint32_t count);
 
 /// The rows and columns of a grid whose centers lie within [lo, hi], world frame.
 [[nodiscard]] IndexRange rowsWithin(const GridFrame& frame, double lo, double hi);
 [[nodiscard]] IndexRange columnsWithin(const GridFrame& frame, double lo, double hi);
 
-/// For each strip of rows, the triangles that reach it when grown by `reach`, in mesh order.
+/// For each strip of rows, the triangles within `reach` of it, in mesh order.
 class TriangleBins {
  public:
   TriangleBins(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t rows_per_strip,
