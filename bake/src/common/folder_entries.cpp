@@ -49,7 +49,7 @@ tl::unexpected<Error> lostLink(const fs::path& link) {
 
 fs::path canonicalPath(const fs::path& path) {
   std::error_code problem;
-  // A relative path of which nothing exists would stay relative.
+  // Make it absolute first, because a relative path of which nothing exists would stay relative.
   fs::path canonical = fs::weakly_canonical(fs::absolute(path, problem), problem);
   if (problem) return path.lexically_normal();
   return canonical.has_filename() ? canonical : canonical.parent_path();

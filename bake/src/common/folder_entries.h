@@ -6,11 +6,11 @@
 
 namespace galactic::bake {
 
-/// What an entry of a folder is, links followed.
+/// The kind of an entry in a folder, after following links.
 enum class EntryKind {
   kFile,
   kFolder,
-  kLostLink,  ///< A link to what is not there, or cannot be looked at.
+  kLostLink,  ///< A link whose target is missing or inaccessible.
   kOther,
 };
 
@@ -20,17 +20,17 @@ struct FolderEntry {
   bool is_link = false;
 };
 
-/// What is in a folder, by ascending path; hidden entries, whose names begin with a dot, are left
-/// out. Fails with kIo, naming the folder, where it cannot be read.
+/// The entries of a folder, by ascending path, without hidden ones (names that begin with a dot).
+/// Fails with kIo, naming the folder, if it cannot be read.
 [[nodiscard]] Result<std::vector<FolderEntry>> entriesOf(const std::filesystem::path& folder);
 
-/// What is wrong with a link to a file that is wanted; kIo.
+/// The error (kIo) for a link whose target is missing or inaccessible.
 [[nodiscard]] tl::unexpected<Error> lostLink(const std::filesystem::path& link);
 
-/// The path with links followed, as far as it exists, and without a slash at its end.
+/// The path with links resolved, as far as it exists, and without a trailing slash.
 [[nodiscard]] std::filesystem::path canonicalPath(const std::filesystem::path& path);
 
-/// Whether `inner` is `outer` or lies in it; both canonical.
+/// Whether `inner` is `outer` or lies in it. Both must be canonical.
 [[nodiscard]] bool liesWithin(const std::filesystem::path& inner,
                               const std::filesystem::path& outer);
 

@@ -3,9 +3,9 @@
 
 namespace galactic::bake {
 
-/// How a file begins that Git LFS left in place of the real one.
+/// The beginning of a pointer file that Git LFS leaves in place of the real file.
 inline constexpr std::string_view kLfsSignature = "version https://git-lfs";
-/// What to say of such a file.
+/// How messages describe such a file.
 inline constexpr std::string_view kLfsPointer = "a pointer of Git LFS (fetch it with git lfs pull)";
 
 }  // namespace galactic::bake

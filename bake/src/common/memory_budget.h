@@ -6,10 +6,10 @@
 
 namespace galactic::bake {
 
-/// What it takes to bake a pack, or to draw episodes in a scene, as measured on meshes of 0.1 to
-/// 60 MB: geometry, textures and grids, and the pack twice while it is checked; of episodes the
-/// triangles with their trees for rays and for Bullet. `source_bytes`: of the files that it is
-/// read from.
+/// Bytes of memory that it takes to bake a pack or to draw episodes in a scene, as measured on
+/// meshes of 0.1 to 60 MB. A bake holds geometry, textures and grids, and twice the pack while it
+/// is checked; episodes hold the triangles with their trees for rays and for Bullet.
+/// `source_bytes`: size of the source files.
 [[nodiscard]] inline std::uint64_t memoryFor(std::uint64_t source_bytes) {
   constexpr std::uint64_t kAtLeast = std::uint64_t{64} << 20U;
   constexpr std::uint64_t kPerByte = 13;
@@ -17,19 +17,20 @@ namespace galactic::bake {
   return kAtLeast + kPerByte * std::min(source_bytes, kMost);
 }
 
-/// Keeps bakes that run at the same time within an amount of memory. Thread-safe.
+/// Keeps concurrent bakes within an amount of memory. Thread-safe.
 class MemoryBudget {
  public:
   explicit MemoryBudget(std::uint64_t bytes) : bytes_(bytes) {}
 
-  /// The whole of it.
+  /// The whole budget.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
-  /// A part of the budget, for as long as it lives: it comes back whatever ends a bake, as others
-  /// wait for it.
+  /// Holds a part of the budget while it lives. The destructor returns it however a bake ends,
+  /// because others wait for it.
   class Share {
    public:
-    /// Waits until `bytes` are free. What wants more than there is at all waits until it is alone.
+    /// Waits until `bytes` are free. A share larger than the whole budget waits until there is no
+    /// other.
     Share(MemoryBudget& budget, std::uint64_t bytes) : budget_(budget), bytes_(bytes) {
       budget_.take(bytes_);
     }

@@ -2,7 +2,7 @@
 
 namespace galactic::bake {
 
-/// One call operator of several lambdas, for std::visit.
+/// Combines several lambdas into one callable, for std::visit.
 template <class... T>
 struct Overload : T... {
   using T::operator()...;

@@ -3,7 +3,8 @@
 
 namespace galactic::bake {
 
-/// SplitMix64: the same numbers with every standard library, unlike the std:: distributions.
+/// SplitMix64. Unlike the std:: distributions, it gives the same numbers with every standard
+/// library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -7,7 +7,7 @@
 
 namespace galactic::bake {
 
-/// A point or direction in double precision: fits compute in it and round once, at the end.
+/// A point or direction in double precision. Fits compute with it and round once, at the end.
 struct Vec3d {
   double x = 0;
   double y = 0;
@@ -50,14 +50,14 @@ struct Vec3d {
 
 [[nodiscard]] inline double norm(const Vec3d& v) { return std::sqrt(squaredNorm(v)); }
 
-/// `v` at unit length; `fallback` where it has none.
+/// `v` at unit length; `fallback` if `v` is zero.
 [[nodiscard]] inline Vec3d normalized(const Vec3d& v, const Vec3d& fallback = {1, 0, 0}) {
   const double length = norm(v);
   return length > 0 ? v * (1 / length) : fallback;
 }
 
-/// Direction number `index` of `count` that are spread evenly over the sphere, on a Fibonacci
-/// spiral.
+/// Direction number `index` of `count` directions that are spread evenly over the sphere on a
+/// Fibonacci spiral.
 [[nodiscard]] inline Vec3d evenDirection(std::size_t index, std::size_t count) {
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
   const double z = 1 - (2 * static_cast<double>(index) + 1) / static_cast<double>(count);

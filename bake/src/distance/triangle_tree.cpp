@@ -6,12 +6,13 @@
 
 namespace galactic::bake {
 
-/// What a tree asks of a facet, together: facets in the order of the tree lie anywhere.
+/// What building a tree needs of a facet, in one place, because the facets themselves are scattered
+/// in memory.
 struct PartedFacet {
-  /// Three floats, which corners are, and one that nobody reads: compared as one vector.
+  /// The three floats of a corner and an unused one, so that they are compared as one vector.
   using Quad [[gnu::vector_size(16)]] = float;
 
-  /// A box that holds nothing until it is grown.
+  /// A box that is empty until it is grown.
   struct Extent {
     Quad min = Quad{} + HUGE_VALF;
     Quad max = Quad{} - HUGE_VALF;
@@ -20,7 +21,8 @@ struct PartedFacet {
       min = other.min < min ? other.min : min;
       max = max < other.max ? other.max : max;
     }
-    /// Half of its surface: how often a search has to look into it, but for a factor.
+    /// Half of the box's surface, to which the probability that a search enters the box is
+    /// proportional.
     [[nodiscard]] double halfSurface() const {
       const Vec3d size = widen(toVec3(max)) - widen(toVec3(min));
       return size.x * size.y + size.y * size.z + size.z * size.x;
@@ -39,7 +41,7 @@ struct PartedFacet {
   [[nodiscard]] static Vec3 toVec3(const Quad& quad) { return {quad[0], quad[1], quad[2]}; }
 
   std::array<double, 3> middle{};
-  /// In the mesh.
+  /// Index in the mesh.
   std::uint32_t index;
   Extent extent;
 };
@@ -49,13 +51,13 @@ namespace {
 using Extent = PartedFacet::Extent;
 
 constexpr std::uint32_t kFacetsPerLeaf = 4;
-/// More than kDeepest and the depth of a halving tree over fewer than 2^32 facets.
+/// At least the sum of kDeepest and the depth of a halving tree over fewer than 2^32 facets.
 constexpr std::size_t kStack = 80;
-/// Deeper than this, facets are halved by number, so that the search's stack suffices.
+/// Below this depth, facets are halved by number, so that the search's stack is large enough.
 constexpr std::uint32_t kDeepest = 40;
 constexpr std::size_t kBins = 16;
 
-/// Where the middles of facets lie, by axis.
+/// The range of the facets' middles along each axis.
 struct MiddleRange {
   explicit MiddleRange(std::span<const PartedFacet> facets) {
     for (const PartedFacet& facet : facets) {
@@ -73,7 +75,8 @@ struct MiddleRange {
     return size(1) >= size(2) ? 1 : 2;
   }
 
-  /// Of kBins along an axis; the first one where all middles are the same there.
+  /// The bin, of kBins along an axis, that holds the facet's middle; the first one if all middles
+  /// are the same.
   [[nodiscard]] std::size_t binOf(const PartedFacet& facet, std::size_t axis) const {
     const double whole = size(axis) > 0 ? size(axis) : 1;
     const double share = (facet.middle[axis] - min[axis]) / whole;
@@ -84,7 +87,8 @@ struct MiddleRange {
   std::array<double, 3> max{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 };
 
-/// Where facets are parted: those whose middle lies in a bin below `bin` of kBins along `axis`.
+/// A split of facets: those whose middle is in a bin below `bin`, of kBins along `axis`, come
+/// first.
 struct Parting {
   std::size_t axis = 0;
   std::size_t bin = 0;
@@ -104,10 +108,10 @@ struct Bin {
   }
 };
 
-/// The parting of bins along an axis that searches pay least for: the surface of each side times
-/// its facets (Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
+/// The split along an axis that costs searches least: the sum over both sides of surface times
+/// number of facets (Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
 Parting bestParting(const std::array<Bin, kBins>& bins, std::size_t axis) {
-  // Before a bin that is empty, facets are parted as before the next one.
+  // A split before an empty bin is the same as before the next one.
   std::array<double, kBins> left_cost{};
   Bin left = bins[0];
   for (std::size_t n = 1; n < kBins; ++n) {
@@ -126,7 +130,7 @@ Parting bestParting(const std::array<Bin, kBins>& bins, std::size_t axis) {
   return best;
 }
 
-/// The best one of all axes. Its cost is infinite where nothing parts the facets.
+/// The best split along any axis. Its cost is infinite if no split separates the facets.
 Parting bestParting(std::span<const PartedFacet> facets, const MiddleRange& middles) {
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const PartedFacet& facet : facets) {
@@ -144,7 +148,7 @@ Parting bestParting(std::span<const PartedFacet> facets, const MiddleRange& midd
   return best;
 }
 
-/// Parts the facets of a node in two; returns how many come first.
+/// Splits the facets of a node in two. Returns the size of the first part.
 std::size_t part(std::span<PartedFacet> facets, std::uint32_t depth) {
   const MiddleRange middles(facets);
   const Parting best = depth < kDeepest ? bestParting(facets, middles) : Parting{};
@@ -194,7 +198,7 @@ Vec3d nearestOnFacet(const Vec3d& p, const Facet& facet) {
   const double to_b = d5 - d6;
   if (va <= 0 && to_c >= 0 && to_b >= 0) return b + (c - b) * (to_c / (to_c + to_b));
   const double sum = va + vb + vc;
-  // A triangle without area that the edge tests let pass by rounding.
+  // A triangle without area may pass the edge tests by rounding.
   if (!(sum > 0)) return a;
   return a + ab * (vb / sum) + ac * (vc / sum);
 }
@@ -218,7 +222,8 @@ void TriangleTree::build(std::span<PartedFacet> facets, std::uint32_t depth) {
   nodes_.push_back(
       {.min = PartedFacet::toVec3(extent.min), .max = PartedFacet::toVec3(extent.max)});
   if (facets.size() <= kFacetsPerLeaf) {
-    // The parts below are sets; only here does their order show.
+    // Splitting does not preserve order, so it is made unique here, in the leaves, where it
+    // matters.
     std::sort(facets.begin(), facets.end(),
               [](const PartedFacet& a, const PartedFacet& b) { return a.index < b.index; });
     nodes_[at].first = static_cast<std::uint32_t>(leaves_.size());
@@ -244,7 +249,7 @@ NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) c
   };
   if (limits.hint != kNoFacet) consider(facets_[limits.hint], limits.hint);
   if (nodes_.empty()) return best;
-  // Boxes are compared in single precision: this much is more than their rounding.
+  // Boxes are compared in single precision. This factor exceeds their rounding.
   constexpr double kRounding = 1 - 1e-5;
   const Vec3 from = narrow(p);
   std::array<std::pair<std::uint32_t, float>, kStack> stack;

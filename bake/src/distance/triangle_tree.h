@@ -15,30 +15,30 @@ using Facet = std::array<Vec3, 3>;
 
 inline constexpr std::uint32_t kNoFacet = std::numeric_limits<std::uint32_t>::max();
 
-/// The point of a mesh that is nearest to some other point.
+/// The point of a mesh nearest to a given point.
 struct NearestPoint {
-  /// Square of the distance, square meters.
+  /// Squared distance, square meters.
   double squared = 0;
   Vec3d point{};
-  /// kNoFacet: nothing within the limit that was asked for.
+  /// kNoFacet: nothing lies within the given limit.
   std::uint32_t facet = kNoFacet;
 };
 
-/// How far a search for the nearest point has to go.
+/// When a search for the nearest point may stop.
 struct SearchLimits {
-  /// Nothing further than this counts.
+  /// Facets farther away than this do not count.
   double squared_limit = std::numeric_limits<double>::infinity();
-  /// Anything nearer than this ends the search: the answer need not be the nearest then.
+  /// The search ends at the first point nearer than this, which need not be the nearest one.
   double squared_enough = 0;
-  /// A facet that is likely near.
+  /// A facet that is likely to be near.
   std::uint32_t hint = kNoFacet;
 };
 
 /// A facet while a tree is built.
 struct PartedFacet;
 
-/// A bounding volume hierarchy over triangles for exact distances. Immutable, so safe to share
-/// between threads.
+/// A bounding volume hierarchy over triangles for exact distances. Immutable, so threads may share
+/// it.
 class TriangleTree {
  public:
   explicit TriangleTree(std::vector<Facet> facets);
@@ -54,10 +54,10 @@ class TriangleTree {
     Vec3 max;
     /// First facet of a leaf, or index of the second child; the first child follows its parent.
     std::uint32_t first = 0;
-    /// Facets of a leaf; 0: an inner node.
+    /// Number of facets of a leaf; 0 for an inner node.
     std::uint32_t count = 0;
 
-    /// Of `p` to the box, in single precision.
+    /// Squared distance of `p` to the box, in single precision.
     [[nodiscard]] float squaredDistance(const Vec3& p) const {
       const float x = std::max(std::max(min.x - p.x, p.x - max.x), 0.0F);
       const float y = std::max(std::max(min.y - p.y, p.y - max.y), 0.0F);
@@ -66,14 +66,14 @@ class TriangleTree {
     }
   };
 
-  /// Appends the node of some facets, `depth` nodes below the root, and all nodes below it.
+  /// Appends the node for `facets`, `depth` levels below the root, and all nodes below it.
   void build(std::span<PartedFacet> facets, std::uint32_t depth);
 
   std::vector<Facet> facets_;
   std::vector<Node> nodes_;
   /// facets_ in the order of the leaves.
   std::vector<Facet> leaves_;
-  /// Index into facets_ of each of leaves_.
+  /// Index into facets_ of each element of leaves_.
   std::vector<std::uint32_t> facet_of_leaf_;
 };
 

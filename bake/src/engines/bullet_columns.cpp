@@ -27,7 +27,7 @@ btDefaultCollisionConstructionInfo smallPools() {
   return info;
 }
 
-/// Remembers whether there was any contact.
+/// Records whether there was any contact.
 struct AnyContact : btCollisionWorld::ContactResultCallback {
   bool found = false;
 
@@ -43,7 +43,7 @@ btTransform placedAt(const btVector3& center) {
   return btTransform(btQuaternion::getIdentity(), center);
 }
 
-/// One collision object, and the machinery Bullet needs to test spheres against it. For one thread.
+/// One collision object, and what Bullet needs to test spheres against it. Not thread-safe.
 class SphereProbe {
  public:
   SphereProbe(std::shared_ptr<const BulletMesh> shape, const BulletCastOptions& options)
@@ -58,7 +58,7 @@ class SphereProbe {
   [[nodiscard]] const BulletCastOptions& options() const { return options_; }
   [[nodiscard]] const std::shared_ptr<const BulletMesh>& shape() const { return shape_; }
 
-  /// Whether a ball of `radius` at `center` touches the mesh as Bullet sees it: Bullet counts
+  /// Whether a ball of `radius` at `center` touches the mesh according to Bullet, which counts
   /// contacts up to 2 % of the radius away.
   [[nodiscard]] bool overlaps(const btVector3& center, float radius) {
     btSphereShape sphere(radius);
@@ -66,7 +66,7 @@ class SphereProbe {
     object.setCollisionShape(&sphere);
     object.setWorldTransform(placedAt(center));
     AnyContact contact;
-    // Without adding the ball to the world first: the same contacts, less bookkeeping.
+    // Does not add the ball to the world, which gives the same contacts with less bookkeeping.
     collision_world_.contactPairTest(&object, &mesh_object_, contact);
     return contact.found;
   }
@@ -78,7 +78,7 @@ class SphereProbe {
     float height = 0;
   };
 
-  /// Moves a ball of `radius` from `from` to `to`, above or below it.
+  /// Moves a ball of `radius` from `from` to `to`, which is above or below `from`.
   [[nodiscard]] std::optional<Hit> sweep(const btVector3& from, const btVector3& to, float radius) {
     const btSphereShape sphere(radius);
     btCollisionWorld::ClosestConvexResultCallback closest(from, to);
@@ -99,8 +99,8 @@ class SphereProbe {
   btCollisionWorld collision_world_;
 };
 
-/// One column on its way up: the published search (paper, appendix G, and its code), at our
-/// columns.
+/// Searches one column from bottom to top: the published search (paper, appendix G, and its code),
+/// at the centers of our columns.
 class ColumnSearch {
  public:
   ColumnSearch(SphereProbe& probe, const GridFrame& frame, ColumnIndex at)
@@ -132,7 +132,8 @@ class ColumnSearch {
     return !sphere_.overlaps(center(height), radius_ + sphere_.options().contact_pad);
   }
 
-  /// From a clear probe: the open span ends where a ball moving up touches, or never.
+  /// Starts at a clear probe. The open span ends where a ball moving up touches something, or at
+  /// the top.
   void sweepUp() {
     const auto hit = sphere_.sweep(center(probe_), center(heights_.hi), radius_);
     if (!hit) {
@@ -142,11 +143,11 @@ class ColumnSearch {
       return;
     }
     top_ = probe_ + hit->distance;
-    // At least one step up, whatever the cast says: the search must end.
+    // At least one step up, whatever the cast returns, so that the search ends.
     probe_ = std::max(probe_, hit->height) + sphere_.options().step;
   }
 
-  /// Steps up until the ball is clear, then looks down for the obstacle's upper side.
+  /// Steps up until the ball is clear, then casts down to find the obstacle's upper side.
   void leaveObstacle() {
     while (probe_ < heights_.hi) {
       if (!isClear(probe_)) {
@@ -154,10 +155,10 @@ class ColumnSearch {
         continue;
       }
       const auto hit = sphere_.sweep(center(probe_), center(top_), radius_);
-      // The published code reads the first of the hits before it asks whether there is one, which
-      // is undefined when there is none; asking first gives what it meant.
+      // The published code reads the first hit before it checks whether there is one, which is
+      // undefined behavior without hits. Checking first does what it intends.
       if (!hit) {
-        // A grazing obstacle, seen from one side only: dropped, and the span goes on.
+        // A grazing obstacle that only one of the casts hits is ignored, and the span continues.
         if (!open_) open_ = heights_.lo;
         return;
       }
@@ -181,10 +182,10 @@ class ColumnSearch {
   float z_;
   float radius_;
   Span heights_;
-  /// Where the ball is.
+  /// Height of the ball.
   float probe_;
-  /// Top of the open span, or the lower end of the heights while there is none: how far down the
-  /// obstacle above it can reach.
+  /// Top of the open span, or the lower end of the heights if there is none. The obstacle above
+  /// cannot reach farther down.
   float top_;
   /// Bottom of the open span.
   std::optional<float> open_;

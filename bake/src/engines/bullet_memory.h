@@ -1,5 +1,5 @@
 #pragma once
-// For the files that name Bullet alone.
+// Only for the files that name Bullet.
 #include <LinearMath/btAlignedAllocator.h>
 
 #include <cstddef>
@@ -8,9 +8,10 @@
 
 namespace galactic::bake {
 
-/// Where memory runs out, Bullet throws std::bad_alloc, as all else does: by itself it does not
-/// look at what it gets, and writes to null. Set before main(), as any thread may call Bullet. What
-/// was allocated before can be freed: all of it comes from malloc.
+/// Makes Bullet throw std::bad_alloc when memory runs out, as all other code does: by default it
+/// does not check what its allocator returns, and writes to null. Set before main(), because any
+/// thread may call Bullet. Memory allocated earlier can still be freed, as all of it comes from
+/// malloc.
 inline const bool bullet_throws = [] {
   const auto allocate = [](std::size_t bytes) -> void* {
     if (void* memory = std::malloc(bytes)) return memory;

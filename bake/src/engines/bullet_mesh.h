@@ -1,5 +1,5 @@
 #pragma once
-// For the files that name Bullet alone.
+// Only for the files that name Bullet.
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 
@@ -15,7 +15,7 @@ namespace galactic::bake {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(int));
 
-/// A mesh with its tree as Bullet wants it. Immutable once built: many casters may share it.
+/// A mesh with its tree as Bullet wants it. Immutable once built, so many casters may share it.
 class BulletMesh {
  public:
   explicit BulletMesh(const TriangleMesh& mesh)
@@ -41,7 +41,7 @@ class BulletMesh {
   BulletMesh(const BulletMesh&) = delete;
   BulletMesh& operator=(const BulletMesh&) = delete;
 
-  /// Bullet takes shapes as mutable even where it only reads them.
+  /// Returns a mutable shape because Bullet asks for one even where it only reads.
   [[nodiscard]] btBvhTriangleMeshShape* get() const { return shape_.get(); }
 
  private:

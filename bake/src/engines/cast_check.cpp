@@ -12,23 +12,24 @@
 namespace galactic::bake {
 namespace {
 
-/// How far from the end of a piece its first and last height are judged: more than a span end's own
-/// rounding, less than anything that matters. Meters.
+/// Distance from the ends of a piece at which its first and last heights are judged: more than the
+/// rounding of a span's end, and less than anything that matters. Meters.
 constexpr double kPulledIn = 1e-4;
-/// A disagreement is judged in parts about this long, meters, so that one that is a tie at one end
-/// and the method's at the other is split between the two.
+/// A disagreement is judged in parts of about this length, meters, so that one that is a tie at one
+/// end and due to the method at the other is split between the two.
 constexpr double kPartLength = 0.01;
-/// More parts than this are made longer instead.
+/// Maximum number of parts; longer pieces get longer parts.
 constexpr double kMaxParts = 512;
 
-/// Triangles that the casts of one column may test on average: their search meets a triangle at
-/// each step, BulletCastOptions::step, that its ball is at its height. 128 columns of such scenes
-/// take about half a second of one core.
+/// Number of triangles that the casts of one column may test on average. The search tests a
+/// triangle at each step (BulletCastOptions::step) at which its ball is at the triangle's height.
+/// 128 such columns take about half a second on one core.
 constexpr double kTestsPerColumn = 20'000;
-/// So many columns are replayed however many triangles they are near.
+/// At least this many columns are replayed, however many triangles are near them.
 constexpr std::uint32_t kLeastColumns = 4;
 
-/// A triangle near a sampled column: how far its box is aside, squared, and its heights.
+/// A triangle near a sampled column, with the squared horizontal distance of its box and its range
+/// of heights.
 struct NearTriangle {
   std::uint32_t triangle = 0;
   double aside_squared = 0;
@@ -41,7 +42,8 @@ struct SampledColumn {
   std::vector<NearTriangle> near;
 };
 
-/// A scrambled number (the finalizer of SplitMix64): a spread that no pattern in the scene matches.
+/// Scrambles a number (with the finalizer of SplitMix64), so that no pattern in the scene matches
+/// the sample.
 std::uint64_t scramble(std::uint64_t value) {
   value += 0x9e3779b97f4a7c15U;
   value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -49,8 +51,8 @@ std::uint64_t scramble(std::uint64_t value) {
   return value ^ (value >> 31U);
 }
 
-/// One column from each of `wanted` equal shares of those that hold spans, in ascending order; all
-/// of them when they are fewer.
+/// One column from each of `wanted` equal shares of the columns with spans, in ascending order; all
+/// of them if there are fewer.
 std::vector<SampledColumn> chooseColumns(const Columns& columns, std::uint32_t wanted) {
   const std::size_t count = columns.frame.columnCount();
   std::uint64_t with_spans = 0;
@@ -79,15 +81,15 @@ std::array<double, 2> extent(const std::array<Point, 3>& corners, std::size_t ax
   return {lo, hi};
 }
 
-/// Cells along one axis, the last one included.
+/// Cells first to last along one axis.
 struct CellRange {
   std::uint32_t first = 0;
   std::uint32_t last = 0;
 };
 
-/// The cells of an axis (its first edge at `min`) that a range of coordinates meets, and one more
-/// to each side for rounding. Counted here, not by the engines' own function: the check is to see
-/// what that one loses.
+/// The cells along an axis (whose first edge is at `min`) that a range of coordinates overlaps, and
+/// one more on each side for rounding. Does not use the engines' function, because the check must
+/// find what that one loses.
 CellRange cellsWithin(const std::array<double, 2>& range, double min, const GridFrame& frame,
                       std::uint32_t count) {
   const auto spacing = static_cast<double>(frame.spacing);
@@ -102,8 +104,8 @@ double outside(double value, const std::array<double, 2>& range) {
   return std::max({range[0] - value, value - range[1], 0.0});
 }
 
-/// Calls `visit` with each sampled column and each triangle that may be within `reach` of it. One
-/// pass over the mesh: for most triangles the search among the columns, which are in ascending
+/// Calls `visit` with each sampled column and each triangle that may be within `reach` of it. Makes
+/// one pass over the mesh; for most triangles, the search among the columns, which are in ascending
 /// order, ends at once.
 template <class Visit>
 void forEachNear(const TriangleMesh& mesh, const GridFrame& frame, double reach,
@@ -140,7 +142,7 @@ void forEachNear(const TriangleMesh& mesh, const GridFrame& frame, double reach,
   }
 }
 
-/// How many tests of triangles the casts of these columns take at most.
+/// Upper bound of the number of triangle tests that the casts of these columns take.
 double testsOf(const TriangleMesh& mesh, const GridFrame& frame, double reach,
                std::vector<SampledColumn>& columns) {
   const auto step = static_cast<double>(BulletCastOptions().step);
@@ -152,9 +154,9 @@ double testsOf(const TriangleMesh& mesh, const GridFrame& frame, double reach,
   return tests;
 }
 
-/// The columns to replay, with the triangles within `reach` of each. As many as are wanted, or as
-/// few as make up for the triangles within reach: a scan of a million triangles under a ball of
-/// half a meter would take longer to check than to bake.
+/// The columns to replay, with the triangles within `reach` of each. There are `wanted` columns, or
+/// fewer if too many triangles are within reach: a scan of a million triangles with a ball of half
+/// a meter would take longer to check than to bake.
 std::vector<SampledColumn> sampleOf(const TriangleMesh& mesh, const Columns& columns, double reach,
                                     std::uint32_t wanted) {
   std::vector<SampledColumn> sample = chooseColumns(columns, wanted);
@@ -170,7 +172,7 @@ std::vector<SampledColumn> sampleOf(const TriangleMesh& mesh, const Columns& col
   return sample;
 }
 
-/// What the distance says about the grid at one height, in ascending order of gravity.
+/// The verdict of the true distance on the grid at one height, in ascending order of severity.
 enum class Verdict { kTie, kRight, kWrong };
 
 /// Judges one sampled column by brute force in double precision.
@@ -187,8 +189,8 @@ class Judge {
 
   /// The verdict on a grid that calls `height` free or blocked.
   [[nodiscard]] Verdict at(double height, bool grid_says_free) const {
-    // Beyond the radius and the tolerance, or within the radius less the tolerance, the distance
-    // itself no longer matters.
+    // If the distance is greater than the radius plus the tolerance, or less than the radius minus
+    // the tolerance, its exact value does not matter.
     const double reach = radius_ + 2 * tolerance_;
     const double inside = std::max(0.0, radius_ - 2 * tolerance_);
     double least = reach * reach;
@@ -213,7 +215,7 @@ class Judge {
   double tolerance_;
 };
 
-/// Heights in which grid and casts each say one thing.
+/// A range of heights in which neither the grid's nor the casts' answer changes.
 struct Piece {
   double lo = 0;
   double hi = 0;
@@ -229,7 +231,7 @@ bool contains(std::span<const Span> spans, double height) {
   });
 }
 
-/// Cuts the heights at every end of both, ascending.
+/// Cuts the heights at the ends of all spans of both, ascending.
 std::vector<Piece> cutInPieces(const Span& heights, std::span<const Span> grid,
                                std::span<const Span> cast) {
   std::vector<float> cuts{heights.lo, heights.hi};
@@ -251,10 +253,10 @@ std::vector<Piece> cutInPieces(const Span& heights, std::span<const Span> grid,
   return pieces;
 }
 
-/// Judges a piece, cut in equal parts: each part in its middle, the first and last also close to
-/// the piece's ends; a part gets its gravest verdict. Adds the parts' lengths to `result`. What
-/// both methods agree on can only be an error; its parts are as long as the radius, since most
-/// obstacles block twice that.
+/// Judges a piece in equal parts: each part at its middle, the first and last also close to the
+/// piece's ends. A part gets its most severe verdict. Adds the parts' lengths to `result`. Where
+/// both methods agree, there can only be errors; the parts there are as long as the radius, because
+/// most obstacles block twice that.
 void judgePiece(const Judge& judge, const Piece& piece, double radius, CastCheck& result) {
   double by_method = 0;
   double ties = 0;
@@ -285,8 +287,8 @@ void judgePiece(const Judge& judge, const Piece& piece, double radius, CastCheck
   result.longest_tie = std::max(result.longest_tie, ties);
 }
 
-/// The tolerance, or two units in the last place of the greatest height where those are more: span
-/// ends are floats.
+/// The tolerance, or two units in the last place of the greatest height if that is more, because
+/// the ends of spans are floats.
 double effectiveTolerance(const Span& heights, double tolerance) {
   const float greatest = std::max(std::abs(heights.lo), std::abs(heights.hi));
   const float unit = std::nextafter(greatest, std::numeric_limits<float>::infinity()) - greatest;
@@ -329,14 +331,14 @@ CastCheck checkWithCasts(const TriangleMesh& mesh, const Columns& columns,
                          unsigned threads) {
   const GridFrame& frame = columns.frame;
   const double tolerance = effectiveTolerance(frame.heights, options.tie_tolerance);
-  // Further triangles cannot bring any point of a column within the radius and the tolerance.
+  // Triangles farther away are more than the radius and the tolerance from every point of a column.
   const double reach = static_cast<double>(frame.radius) + 2 * tolerance;
   const std::vector<SampledColumn> sample = sampleOf(mesh, columns, reach, options.columns);
   std::vector<CastCheck> checks(sample.size());
   parallelFor(threads, sample.size(), [&](std::size_t n) {
     checks[n] = checkColumn(mesh, columns, sample[n], caster.another(), tolerance);
   });
-  // In the order of the columns: sums of fractions depend on it.
+  // Added in the order of the columns, on which floating-point sums depend.
   CastCheck result;
   for (const CastCheck& check : checks) add(check, result);
   return result;

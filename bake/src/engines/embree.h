@@ -1,5 +1,5 @@
 #pragma once
-// For the files that name Embree alone; versions 3 and 4.
+// Only for the files that name Embree; versions 3 and 4.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else

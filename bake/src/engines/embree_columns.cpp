@@ -18,8 +18,8 @@ using RayContext = RTCRayQueryContext;
 using RayContext = RTCIntersectContext;
 #endif
 
-/// Boxes grow by this part of their coordinates, several units in the last place: for the rounding
-/// of the box and of the ray.
+/// Boxes grow by this share of their coordinates, several units in the last place, to allow for the
+/// rounding of box and ray.
 constexpr float kBoxSlack = 1e-6F;
 
 /// What the geometry's callbacks read.
@@ -32,10 +32,11 @@ struct DilatedMesh {
   }
 };
 
-/// One ray with all it meets. The context comes first: Embree hands its address to the callback.
+/// One ray with all that it meets. The context comes first, because Embree passes its address to
+/// the callback.
 struct ColumnRay {
   RayContext context;
-  /// The column in double, which the ray's floats only round.
+  /// The column in double; the ray's floats are only rounded from these.
   double x = 0;
   double z = 0;
   std::vector<BlockedInterval>* blocked = nullptr;
@@ -64,7 +65,7 @@ void boundTriangle(const RTCBoundsFunctionArguments* arguments) {
   bounds.upper_z = upper[2];
 }
 
-/// Notes the interval and accepts no hit, so that the ray goes on through everything.
+/// Records the interval and accepts no hit, so that the ray passes through everything.
 void intersectTriangle(const RTCIntersectFunctionNArguments* arguments) {
   const auto& dilated = *static_cast<const DilatedMesh*>(arguments->geometryUserPtr);
   const auto& ray = *reinterpret_cast<const ColumnRay*>(arguments->context);
@@ -74,7 +75,7 @@ void intersectTriangle(const RTCIntersectFunctionNArguments* arguments) {
   ray.blocked->push_back({static_cast<float>(heights->lo), static_cast<float>(heights->hi)});
 }
 
-/// Embree fails only when memory runs out or when it is not made for this processor.
+/// Embree fails only if memory runs out or if it does not support this processor.
 tl::unexpected<Error> embreeFailure(RTCDevice device) {
   const bool out_of_memory = rtcGetDeviceError(device) == RTC_ERROR_OUT_OF_MEMORY;
   return fail(ErrorCode::kInternal, "`engine`",
@@ -86,7 +87,7 @@ Result<EmbreeScene> buildScene(RTCDevice device, DilatedMesh& dilated) {
   EmbreeScene scene(rtcNewScene(device));
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   if (!scene || geometry == nullptr) return embreeFailure(device);
-  // Robust: a ray along an axis may run exactly in a box's face.
+  // Robust, because a ray along an axis may lie exactly in a box's face.
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(dilated.mesh.triangles.size()));
   rtcSetGeometryUserData(geometry, &dilated);

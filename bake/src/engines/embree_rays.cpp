@@ -9,8 +9,8 @@
 namespace galactic::bake {
 namespace {
 
-// Rays on an edge are judged differently by different instructions, and packs are compared byte by
-// byte: SSE2 is what all x86-64 processors have. Other processors have one set anyway.
+// Whether a ray hits an edge depends on the instruction set, and packs are compared byte by byte.
+// So this uses SSE2, which all x86-64 processors have. Other architectures only have one set.
 #if defined(__x86_64__)
 constexpr const char* kInstructions = "isa=sse2,";
 #else
@@ -47,8 +47,8 @@ TriangleRays& TriangleRays::operator=(TriangleRays&& other) noexcept = default;
 
 std::optional<TriangleRays> TriangleRays::build(std::vector<Vec3> positions,
                                                 std::vector<Triangle> triangles, unsigned threads) {
-  // Embree ends the program where memory runs out while it and its threads begin: it is not begun
-  // with less. Bytes.
+  // Embree terminates the program if memory runs out while it starts its threads, so it is not
+  // started with less than this. Bytes.
   constexpr double kToBegin = 160e6;
   if (!checkMemory(kToBegin, "rays", {})) return std::nullopt;
   auto built = std::make_unique<Scene>();
@@ -57,7 +57,7 @@ std::optional<TriangleRays> TriangleRays::build(std::vector<Vec3> positions,
   RTCDevice device = built->device.get();
   if (device == nullptr) return std::nullopt;
   const std::size_t count = positions.size();
-  // Embree reads 16 bytes for each position, so there must be some behind the last.
+  // Embree reads 16 bytes per position, so there must be more after the last one.
   positions.emplace_back();
   built->positions = std::move(positions);
   built->triangles = std::move(triangles);
@@ -102,7 +102,7 @@ bool TriangleRays::isOpen(const Ray& ray) const {
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene_->scene.get(), &context, &traced);
 #endif
-  // Embree marks what it met with a negative length.
+  // Embree marks an occluded ray with a negative length.
   return traced.tfar >= 0;
 }
 

@@ -9,7 +9,7 @@
 
 namespace galactic::bake {
 
-/// Part of a straight line: from `nearest` to `farthest`, both in lengths of `direction`.
+/// A segment of a line, from `nearest` to `farthest`, both in multiples of `direction`.
 struct Ray {
   Vec3 origin;
   Vec3 direction;
@@ -17,11 +17,11 @@ struct Ray {
   float farthest = std::numeric_limits<float>::infinity();
 };
 
-/// Triangles that rays are sent through; both sides are met. The answers are the same on all
+/// Casts rays against triangles, which are hit from both sides. Results are the same on all
 /// processors of one architecture. Implemented with Embree, in embree_rays.cpp.
 class TriangleRays {
  public:
-  /// `threads`: threads that build. None where memory runs out.
+  /// `threads`: number of threads that build. None if memory runs out.
   [[nodiscard]] static std::optional<TriangleRays> build(std::vector<Vec3> positions,
                                                          std::vector<Triangle> triangles,
                                                          unsigned threads);
@@ -32,11 +32,11 @@ class TriangleRays {
   TriangleRays(const TriangleRays&) = delete;
   TriangleRays& operator=(const TriangleRays&) = delete;
 
-  /// How far away the ray meets a triangle first, in lengths of its direction; none where it meets
-  /// nothing. Thread-safe.
+  /// Distance of the ray's first hit, in multiples of its direction; none if it hits nothing.
+  /// Thread-safe.
   [[nodiscard]] std::optional<float> first(const Ray& ray) const;
 
-  /// Whether the ray meets nothing. Thread-safe.
+  /// Whether the ray hits nothing. Thread-safe.
   [[nodiscard]] bool isOpen(const Ray& ray) const;
 
  private:
