@@ -12,14 +12,14 @@ using Axes = std::array<Vec3d, 3>;
 
 inline constexpr Axes kIdentityAxes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// Right-handed axes whose third is the unit vector `axis`.
+/// Right-handed axes, the third of which is the unit vector `axis`.
 [[nodiscard]] inline Axes axesAround(const Vec3d& axis) {
   const Vec3d other = std::abs(axis.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d first = normalized(cross(other, axis));
   return {first, cross(axis, first), axis};
 }
 
-/// `v` turned by the angle |turn| (radians) about the direction of `turn` (Rodrigues).
+/// `v` rotated by the angle |turn| (radians) about the direction of `turn` (Rodrigues).
 [[nodiscard]] inline Vec3d rotated(const Vec3d& v, const Vec3d& turn) {
   const double angle = norm(turn);
   if (angle <= 0) return v;

@@ -111,7 +111,7 @@ Matrix covarianceOf(const PointSet& points) {
   return covariance;
 }
 
-/// Turns the plane of the axes p and q of a symmetric matrix so that its entry (p, q) vanishes.
+/// Rotates a symmetric matrix in the plane of the axes p and q so that its entry (p, q) vanishes.
 void rotateAway(Matrix& matrix, Matrix& vectors, std::size_t p, std::size_t q) {
   if (matrix[p][q] == 0) return;
   const double half = (matrix[q][q] - matrix[p][p]) / (2 * matrix[p][q]);
@@ -167,7 +167,7 @@ std::array<Vec3d, 2> endsAlong(const PointSet& points, const Vec3d& direction) {
   return {points[ends[0]], points[ends[1]]};
 }
 
-/// Keeps the axes of the box of least surface around the extremal points.
+/// Keeps the axes of the box with the least surface around the extremal points.
 class DitoChoice {
  public:
   explicit DitoChoice(const Extremes& extremes) {

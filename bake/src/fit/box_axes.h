@@ -9,7 +9,7 @@
 
 namespace galactic::bake::fit {
 
-/// Points, one array per coordinate, so that extents are taken with vector instructions.
+/// Points, one array per coordinate, so that extents can be computed with vector instructions.
 struct PointSet {
   std::vector<double> x;
   std::vector<double> y;
@@ -30,27 +30,28 @@ struct Interval {
 
 [[nodiscard]] Interval intervalAlong(const PointSet& points, const Vec3d& direction);
 
-/// Volume of the box with these axes around `points`; sides shorter than `min_side` count as that
+/// Volume of the box with these axes around `points`. Sides shorter than `min_side` count as that
 /// long, so that the best box of flat points is the smallest rectangle.
 [[nodiscard]] double boxVolume(const PointSet& points, const Axes& axes, double min_side);
 
-/// Directions of a box and its volume.
+/// The axes of a box and its volume.
 struct BoxCandidate {
   Axes axes = kIdentityAxes;
   double volume = 0;
 };
 
-/// The best box one of whose axes is a given one. Holds scratch memory: one for each thread.
+/// Finds the best box with one axis given. Holds scratch memory, so each thread needs its own.
 class FixedAxisCalipers {
  public:
-  /// Looks at `points`, which must outlive it.
+  /// Keeps a reference to `points`, which must outlive this.
   FixedAxisCalipers(const PointSet& points, double min_side)
       : points_(points), min_side_(min_side) {}
 
-  /// Exact for that axis (a unit vector): rotating calipers around the points' projection.
+  /// The exact optimum for that axis (a unit vector), by rotating calipers around the projected
+  /// points.
   [[nodiscard]] BoxCandidate bestAround(const Vec3d& axis);
 
-  /// Repeats bestAround() each axis of the box until none makes it smaller, or `rounds` times.
+  /// Repeats bestAround() for each axis of the box until none makes it smaller, or `rounds` times.
   [[nodiscard]] BoxCandidate improve(BoxCandidate box, int rounds);
 
  private:
@@ -67,13 +68,14 @@ class FixedAxisCalipers {
 /// Kallberg, "Fast computation of tight-fitting oriented bounding boxes" (2011).
 [[nodiscard]] Axes ditoAxes(const PointSet& points);
 
-/// The axes of a box of (nearly) least volume around `points` (meters, finite, at least one): over
-/// ten scanned objects at most 0.05 % above the best of 200 random starts walked downhill. Sides
-/// shorter than `min_side` count as that long. Flat points get the smallest rectangle, collinear
-/// ones their line. Candidates are the points' own axes, DiTO-14 and the exact best box around each
-/// face normal of the hull (an optimum has a face flush with the hull or two edges; O'Rourke 1985);
-/// the best of them are improved by calipers about their own axes and by Nelder and Mead's simplex
-/// over rotations. Deterministic: the effort is counted in steps.
+/// The axes of a box of (nearly) least volume around `points` (meters, finite, at least one). On
+/// ten scanned objects, the volume was at most 0.05 % above the best of 200 random starts with
+/// descent. Sides shorter than `min_side` count as that long. Flat points get the smallest
+/// rectangle, collinear ones their line. Candidates are the principal axes, DiTO-14 and the exact
+/// best box around each face normal of the hull (an optimal box is flush with a face or two edges
+/// of the hull; O'Rourke 1985). The best of them are improved by calipers about their own axes and
+/// by Nelder and Mead's simplex over rotations. Deterministic: effort is counted in steps, not in
+/// time.
 [[nodiscard]] Axes minimumBoxAxes(std::span<const Vec3> points, double min_side);
 
 }  // namespace galactic::bake::fit

@@ -14,24 +14,25 @@
 namespace galactic::bake::fit {
 namespace {
 
-/// Thinner than this share of their length, points are rounded along the axes of their own frame:
-/// Bullet rounds each axis to a share of its extent, which must then not mix length and thickness.
+/// Points that are thinner than this share of their length are rounded along the axes of their own
+/// frame. Bullet rounds each axis to a share of its extent, which must not mix length and
+/// thickness.
 constexpr double kThinRatio = 0.05;
 
-/// Where the points lie: an origin among them, and their extents along a frame of their own.
+/// How the points are spread: an origin among them, and their extents along their own frame.
 struct Spread {
   Vec3d origin;
   Axes frame = kIdentityAxes;
   double length = 0;
   double width = 0;
   double thickness = 0;
-  /// What is not greater counts as nothing.
+  /// Extents that are not greater count as 0.
   double tolerance = 0;
   std::size_t first_end = 0;
   std::size_t last_end = 0;
 };
 
-/// Index of the point with the greatest value; the first of equal ones.
+/// Index of the point with the greatest value; the first one if several are equal.
 template <class Value>
 std::size_t greatest(std::span<const Vec3> points, const Value& value) {
   std::size_t best = 0;
@@ -118,7 +119,7 @@ HullCorner cornerAt(std::span<const Vec3> points, std::size_t source) {
   return {static_cast<std::uint32_t>(source), widen(points[source])};
 }
 
-/// Bullet's faces, in its own numbering of corners.
+/// Copies Bullet's faces, with Bullet's numbering of corners.
 void copyFaces(const btConvexHullComputer& bullet, ConvexHull& hull) {
   hull.faces.reserve(static_cast<std::size_t>(bullet.faces.size()));
   for (int face = 0; face < bullet.faces.size(); ++face) {

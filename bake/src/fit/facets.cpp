@@ -10,13 +10,14 @@
 namespace galactic::bake::fit {
 namespace {
 
-/// As a share of the hull's extent: the rounding of a face's corners and of a plane's own.
+/// The rounding of a face's corners and of the plane itself, as a share of the hull's extent.
 constexpr double kPlaneTolerance = 2 * kHullRounding;
-/// A face steeper than this to the plane (cosine, 60 degrees) does not join it, however thin the
-/// body is.
+/// A face at a steeper angle to the plane than this (cosine, 60 degrees) does not join it, however
+/// thin the body is.
 constexpr double kSteepest = 0.5;
 
-/// Twice the area of a face along its outward normal, its corners being where `place` says.
+/// The outward normal of a face, scaled to twice its area. `place` gives the positions of its
+/// corners.
 template <class Place>
 Vec3d areaOf(const std::vector<std::uint32_t>& face, const Place& place) {
   Vec3d area;

@@ -12,17 +12,16 @@
 namespace galactic::bake::fit {
 namespace {
 
-/// The lattice on the cube, from its middle to a face.
+/// Lattice steps from the middle of the cube to a face.
 constexpr int kLattice = 2;
-/// A plane that takes less off the box is not worth its place, meters.
+/// A plane that cuts less off the box is not worth storing, meters.
 constexpr double kLeastCut = 1e-4;
 /// Added to the offsets, so that points are behind the planes whatever order of float operations a
-/// reader uses: this many meters, and this share of the greatest coordinate (eight roundings).
+/// reader uses: a length in meters, and a share of the greatest coordinate (eight roundings).
 constexpr double kPadding = 1e-6;
 constexpr double kRelativePadding = 8 * 6e-8;
 
-/// The directions, in the frame of the box: ascending, so that packs do not depend on anything
-/// else.
+/// The directions in the frame of the box, in a fixed order, so that packs are reproducible.
 std::vector<Vec3d> directions() {
   std::vector<Vec3d> result;
   for (int x = -kLattice; x <= kLattice; ++x) {
@@ -52,7 +51,7 @@ double extentAlong(std::span<const Vec3> points, const Vec3d& direction) {
   return extent;
 }
 
-/// Of the box, in its own frame about its center.
+/// Extent of the box from its center, in its own frame.
 double extentAlong(const Vec3d& half_extents, const Vec3d& direction) {
   return half_extents.x * std::abs(direction.x) + half_extents.y * std::abs(direction.y) +
          half_extents.z * std::abs(direction.z);
@@ -68,7 +67,7 @@ std::vector<HullPlane> hullPlanes(std::span<const Vec3> points, const OrientedBo
   std::vector<HullPlane> planes;
   for (const Vec3d& in_box : directions()) {
     const Vec3 normal = narrow(axes[0] * in_box.x + axes[1] * in_box.y + axes[2] * in_box.z);
-    // From here on with the direction that the floats stand for.
+    // From here on, use the direction as the floats store it.
     const Vec3d stored = widen(normal);
     const double extent = extentAlong(points, stored);
     const double of_box = dot(center, stored) + extentAlong(half, in_box);

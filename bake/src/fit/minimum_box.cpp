@@ -12,16 +12,16 @@
 namespace galactic::bake::fit {
 namespace {
 
-/// The search runs on the points that are extremal along this many directions; the last steps run
-/// on all corners of the hull.
+/// The search uses the points that are extremal along this many directions. The last steps use all
+/// corners of the hull.
 constexpr std::size_t kSearchDirections = 300;
-/// So many different candidates are improved.
+/// Number of different candidates that are improved.
 constexpr std::size_t kImprovedCandidates = 8;
-/// Axes closer than this (cosine, 0.26 and 3.1 degrees) are the same normal, or the same box.
+/// Normals, or axes of boxes, closer than this (cosine, 0.26 and 3.1 degrees) count as the same.
 constexpr double kSameNormal = 1 - 1e-5;
 constexpr double kSameBox = 0.9985;
 
-/// The points that reach farthest along evenly spread directions, in their order.
+/// The points that reach farthest along evenly spread directions, in their original order.
 std::vector<Vec3> extremalPoints(std::span<const Vec3> points) {
   std::vector<bool> chosen(points.size(), false);
   for (std::size_t index = 0; index < kSearchDirections; ++index) {
@@ -50,7 +50,7 @@ std::vector<Vec3> cornersOf(const ConvexHull& hull, std::span<const Vec3> points
   return corners;
 }
 
-/// Different normals of the hull's faces, opposite ones counting as one.
+/// The distinct normals of the hull's faces. Opposite normals count as one.
 std::vector<Vec3d> faceNormals(const ConvexHull& hull) {
   std::vector<Vec3d> normals;
   for (const std::vector<std::uint32_t>& face : hull.faces) {
@@ -93,7 +93,7 @@ std::vector<BoxCandidate> bestDifferent(std::vector<BoxCandidate> candidates) {
   return chosen;
 }
 
-/// Searches the rotations near a box by Nelder and Mead's simplex of the size `radians`.
+/// Searches rotations near a box with Nelder and Mead's simplex; its size is in radians.
 BoxCandidate turnToBetter(const PointSet& points, const BoxCandidate& box, double min_side,
                           const SimplexOptions& options) {
   const auto axes_at = [&](const Vec3d& turn) {

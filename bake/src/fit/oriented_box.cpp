@@ -20,11 +20,12 @@ using fit::PointSet;
 
 constexpr double kMinSide = 2 * static_cast<double>(kMinHalfExtent);
 /// Added to each half extent, so that points are inside whatever order of float operations a reader
-/// uses: this many meters, and this share of the greatest coordinate (eight roundings).
+/// uses: a length in meters, and a share of the greatest coordinate (eight roundings).
 constexpr double kPadding = 1e-6;
 constexpr double kRelativePadding = 8 * 6e-8;
 
-/// How far points reach from the center along each axis, in the float arithmetic of a reader.
+/// How far points reach from the center along each axis, in the float arithmetic that a reader
+/// uses.
 std::array<float, 3> floatReach(const PointSet& points, const Pose& object_from_box) {
   const Pose box_from_object = inverse(object_from_box);
   std::array<float, 3> reach{};
@@ -37,12 +38,12 @@ std::array<float, 3> floatReach(const PointSet& points, const Pose& object_from_
   return reach;
 }
 
-/// The box around `points` with the directions of `axes`, rounded to floats and grown until every
-/// point is inside, by exact arithmetic and by that of floats.
+/// The box around `points` along `axes`, rounded to floats and grown until every point is inside in
+/// exact and in float arithmetic.
 OrientedBox boxAround(const PointSet& points, const Axes& axes) {
   OrientedBox box;
   box.pose.rotation = fit::quaternionOf(fit::nearestEquivalent(axes));
-  // From here on with the axes that the rounded rotation stands for.
+  // From here on, use the axes of the rounded rotation.
   const Axes stored = fit::axesOf(box.pose.rotation);
   std::array<fit::Interval, 3> sides;
   Vec3d center;
@@ -72,7 +73,7 @@ double volumeOf(const OrientedBox& box) {
   return 8 * half.x * half.y * half.z;
 }
 
-/// Up stays up; the sides in the ground plane are those of the rectangle of least area.
+/// Y stays up; the horizontal sides are those of the rectangle of least area.
 Axes yawAxes(const PointSet& points) {
   const Axes around = fit::FixedAxisCalipers(points, kMinSide).bestAround({0, 1, 0}).axes;
   return {around[1], around[2], around[0]};

@@ -15,7 +15,7 @@ double along(const Vec2d& point, const Vec2d& direction) {
   return point.x * direction.x + point.y * direction.y;
 }
 
-/// The corner of a convex polygon that lies farthest in a direction, while that direction turns
+/// Tracks the corner of a convex polygon that is farthest in a direction while that direction turns
 /// counter-clockwise.
 class TurningSupport {
  public:
@@ -28,7 +28,7 @@ class TurningSupport {
     slack_ = kRounding * size;
   }
 
-  /// The greatest extent in `direction`, which is at most half a turn on from the last one.
+  /// The greatest extent in `direction`, which must be at most half a turn after the last one.
   double turnTo(const Vec2d& direction) {
     double best = along(polygon_[at_], direction);
     std::size_t probe = at_;
@@ -44,7 +44,8 @@ class TurningSupport {
   }
 
  private:
-  /// Corners that nearly coincide may seem to go back by this share of the polygon's size.
+  /// Rounding may make nearly coincident corners appear to go back by this share of the polygon's
+  /// size.
   static constexpr double kRounding = 1e-12;
 
   double slack_ = 0;

@@ -12,15 +12,15 @@ struct Vec2d {
   friend constexpr bool operator==(const Vec2d&, const Vec2d&) = default;
 };
 
-/// The corners of the convex hull of `points`, counter-clockwise without collinear ones, into
-/// `polygon`; two for collinear points, one for equal points. Sorts `points`. (Andrew's monotone
-/// chain, 1979.)
+/// Stores the corners of the convex hull of `points` in `polygon`, counter-clockwise and without
+/// collinear ones: two for collinear points, one for equal points. Sorts `points`. (Andrew's
+/// monotone chain, 1979.)
 void convexPolygon(std::vector<Vec2d>& points, std::vector<Vec2d>& polygon);
 
 /// The unit direction of a side of the rectangle of least area around the convex `polygon`
-/// (counter-clockwise, as convexPolygon() gives it): that of one of its edges, (1, 0) for a single
-/// corner. Sides shorter than `min_side` count as that long. (Freeman and Shapira 1975, by rotating
-/// calipers as in Toussaint 1983: linear time.)
+/// (counter-clockwise, from convexPolygon()). It is the direction of one of the polygon's edges;
+/// (1, 0) for a single corner. Sides shorter than `min_side` count as that long. (Freeman and
+/// Shapira 1975, by rotating calipers as in Toussaint 1983: linear time.)
 [[nodiscard]] Vec2d leastRectangleDirection(std::span<const Vec2d> polygon, double min_side);
 
 }  // namespace galactic::bake::fit

@@ -32,7 +32,7 @@ namespace {
 /// A face seen from the center of mass, which is the origin.
 struct Face {
   Vec3d normal;
-  /// Of the center above the face's plane.
+  /// Height of the center of mass above the face's plane.
   double height = 0;
   double solid_angle = 0;
 };
@@ -46,7 +46,7 @@ double solidAngle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return 2 * std::atan2(dot(a, cross(b, c)), opening);
 }
 
-/// An edge of a face: its corners in order, and the face.
+/// An edge of a face, with its corners in order.
 struct DirectedEdge {
   std::pair<std::uint32_t, std::uint32_t> corners;
   std::uint32_t face = 0;
@@ -65,7 +65,7 @@ class RollingBody {
 
   [[nodiscard]] const Face& face(std::size_t index) const { return faces_[index]; }
 
-  /// The face that the body rolls onto from one; itself where it rests.
+  /// The face that the body rolls onto from face `index`; `index` itself if it rests there.
   [[nodiscard]] std::uint32_t next(std::uint32_t index) const {
     const Face& face = faces_[index];
     const Vec3d foot = face.normal * face.height;
@@ -87,10 +87,11 @@ class RollingBody {
   }
 
  private:
-  /// How a foot outside an edge lies to it.
+  /// The position of a foot relative to an edge that it is outside of.
   struct Crossing {
     double distance = 0;
-    /// Beyond the edge's line; at a corner it tells which of two edges is rolled over.
+    /// Distance beyond the edge's line. At a corner, it decides which of two edges the body rolls
+    /// over.
     double beyond_line = 0;
 
     bool operator<(const Crossing& other) const {
@@ -100,7 +101,7 @@ class RollingBody {
     }
   };
 
-  /// Nothing where the foot is on the inner side of the edge.
+  /// None if the foot is on the inner side of the edge.
   static std::optional<Crossing> crossEdge(const Vec3d& foot, const Vec3d& normal, const Vec3d& a,
                                            const Vec3d& b) {
     const Vec3d along = b - a;
@@ -139,7 +140,7 @@ class RollingBody {
     });
   }
 
-  /// The face with a directed edge; `otherwise` where the hull has none.
+  /// The face with a directed edge; `otherwise` if the hull has no such face.
   [[nodiscard]] std::uint32_t faceWith(std::pair<std::uint32_t, std::uint32_t> corners,
                                        std::uint32_t otherwise) const {
     const auto found = std::lower_bound(

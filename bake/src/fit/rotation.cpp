@@ -16,7 +16,7 @@ Quat rounded(const Quaternion& q) {
   for (const double part : q) length += part * part;
   const double factor = (q[3] < 0 ? -1 : 1) / std::sqrt(length);
   const auto part = [&](std::size_t at) {
-    // No negative zero: equal rotations have equal bytes.
+    // Avoid negative zero, so that equal rotations have equal bytes.
     return static_cast<float>(q[at] * factor) + 0.0F;
   };
   return {part(0), part(1), part(2), part(3)};
@@ -27,7 +27,7 @@ double trace(const Axes& axes) { return axes[0].x + axes[1].y + axes[2].z; }
 }  // namespace
 
 Axes nearestEquivalent(const Axes& axes) {
-  // Equally near within rounding: the first in this order of permutations and signs.
+  // Of those equally near up to rounding, take the first in this order of permutations and signs.
   constexpr double kClearlyNearer = 1e-9;
   constexpr std::array<std::array<std::size_t, 3>, 6> kOrders{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -50,7 +50,7 @@ Axes nearestEquivalent(const Axes& axes) {
 
 Quat quaternionOf(const Axes& axes) {
   const auto& [x, y, z] = axes;
-  // Shepperd's method (1978): divide by the greatest part.
+  // Shepperd's method (1978): divide by the greatest component.
   const std::array<double, 4> squares{1 + x.x - y.y - z.z, 1 - x.x + y.y - z.z, 1 - x.x - y.y + z.z,
                                       1 + x.x + y.y + z.z};
   const auto greatest = std::max_element(squares.begin(), squares.end()) - squares.begin();

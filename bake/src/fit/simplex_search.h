@@ -18,8 +18,8 @@ struct SimplexResult {
   double value = 0;
 };
 
-/// The least value of `function` that Nelder and Mead's simplex (1965) finds around the origin of a
-/// three-dimensional space. Deterministic.
+/// The least value of `function` that Nelder and Mead's simplex method (1965) finds around the
+/// origin of a three-dimensional space. Deterministic.
 [[nodiscard]] SimplexResult searchSimplex(const std::function<double(const Vec3d&)>& function,
                                           const SimplexOptions& options);
 

@@ -18,14 +18,14 @@ namespace {
 using fit::ConvexHull;
 using fit::HullShape;
 
-/// A way to lie, before it becomes a pose.
+/// How a body comes to rest, before it becomes a pose.
 struct Resting {
   /// The direction in the object's frame that points down; unit length.
   Vec3d down;
   double likelihood = 0;
 };
 
-/// The corners of the triangles, each once; all vertices of a mesh without triangles.
+/// The vertices that triangles use, each once, or all vertices if the mesh has no triangles.
 std::vector<Vec3> usedVertices(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return fit::uniquePoints(mesh.vertices);
   std::vector<bool> used(mesh.vertices.size(), false);
@@ -39,7 +39,8 @@ std::vector<Vec3> usedVertices(const TriangleMesh& mesh) {
   return fit::uniquePoints(points);
 }
 
-/// A rod lies on any side: four of them, the first with the object as upright as it can be.
+/// A rod can lie on any side. Returns four of them, the first with the object as upright as
+/// possible.
 std::vector<Resting> restingsOfLine(const Vec3d& along) {
   const Vec3d down{0, -1, 0};
   const Vec3d across = down - along * dot(down, along);
@@ -77,7 +78,8 @@ std::vector<Resting> findRestings(const ConvexHull& hull, std::span<const Vec3> 
   return restingsOfSolid(hull, points);
 }
 
-/// Likelihoods are told apart in these steps: those of symmetric bodies are equal up to rounding.
+/// Likelihoods are compared in steps of 1 / kLikelihoodSteps, because those of symmetric bodies are
+/// only equal up to rounding.
 constexpr double kLikelihoodSteps = 1e6;
 
 /// Likeliest first; of equally likely ones, the more upright first.
@@ -89,7 +91,7 @@ void sortByLikelihood(std::vector<Resting>& restings) {
   });
 }
 
-/// Joins each resting to the likeliest one that differs by less than kSamePoseAngle.
+/// Merges each resting into the likeliest one that differs by less than kSamePoseAngle.
 std::vector<Resting> mergeSimilar(std::vector<Resting> restings) {
   const double same = std::cos(kSamePoseAngle);
   sortByLikelihood(restings);
@@ -130,7 +132,8 @@ std::vector<StablePose> findStablePoses(const TriangleMesh& mesh) {
   poses.reserve(restings.size());
   for (const Resting& resting : restings) {
     poses.push_back(poseOf(resting, points));
-    // Of equally likely poses, a later one may be the likelier by its rounding.
+    // Rounding may make the later of two equally likely poses slightly likelier, so limit it to the
+    // one before.
     if (poses.size() < 2) continue;
     poses.back().likelihood =
         std::min(poses.back().likelihood, std::prev(poses.end(), 2)->likelihood);

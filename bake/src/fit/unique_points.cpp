@@ -10,8 +10,8 @@
 namespace galactic::bake::fit {
 namespace {
 
-/// A hash table of points with linear probing; meshes repeat each vertex about six times, so that
-/// sorting them all would take several times as long.
+/// A hash table of points with linear probing. Meshes repeat each vertex about six times, so
+/// sorting all of them would take several times as long.
 class PointTable {
  public:
   explicit PointTable(std::size_t count)
@@ -52,7 +52,7 @@ class PointTable {
 std::vector<Vec3> uniquePoints(std::span<const Vec3> points) {
   PointTable table(points.size());
   for (const Vec3& point : points) {
-    // Adding zero turns a negative zero into the positive one, which equals it.
+    // Adding zero turns a negative zero into a positive one, which has the same value.
     table.add({point.x + 0.0F, point.y + 0.0F, point.z + 0.0F});
   }
   std::vector<Vec3> unique = std::move(table.points());
