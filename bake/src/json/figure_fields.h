@@ -6,15 +6,15 @@
 
 namespace galactic::bake {
 
-// The members of the JSON objects that say what was baked, each named once, for who writes them
-// (reports, the cache) and who reads them (the cache). Of a visitor's functions,
-//   field(name, value)          takes the value; an optional that is empty is left out,
-//   nonzero(name, value)        is left out where it is 0,
-//   detail(name, value)         is not in reports, as detailChoice() and, where it does not hold,
-//   when(condition, name, value),
-//   message(name, sentences)    holds sentences for people, which name options in backquotes,
-//   choice(name, value, names)  takes one of the names,
-//   object(name, list)          takes an object whose members `list` tells.
+// The members of the JSON objects that describe what was baked. Each is named once, for writers
+// (reports, the cache) and readers (the cache). The functions of a visitor:
+//   field(name, value)            takes the value; an empty optional is left out.
+//   nonzero(name, value)          is left out if the value is 0.
+//   detail(name, value)           is not in reports, nor is detailChoice().
+//   when(condition, name, value)  is not in reports if the condition is false.
+//   message(name, sentences)      takes sentences for people, with options in backquotes.
+//   choice(name, value, names)    takes one of the names.
+//   object(name, list)            takes an object whose members `list` visits.
 
 inline constexpr std::array<Named<Region>, kRegionCount> kRegionNames{
     {{"room", Region::kRoom}, {"outside", Region::kOutside}, {"enclosed", Region::kEnclosed}}};
@@ -39,7 +39,7 @@ void listFields(V& v, LengthStatistics& lengths) {
   v.field("max", lengths.max);
 }
 
-/// Of scenes and objects: not an object of their own.
+/// Members of scenes and objects, not a JSON object of their own.
 template <class V>
 void listImport(V& v, ImportStatistics& imported) {
   v.field("format", imported.format);

@@ -14,10 +14,10 @@ concept HasFields = requires(T& value, V& visitor) {
   listFields(visitor, value);
 };
 
-/// Makes a JSON object of fields.
+/// Writes fields to a JSON object.
 class FieldWriter {
  public:
-  /// `rephrase` is null for the cache, which holds every detail.
+  /// `rephrase` is null for the cache, which stores every detail.
   explicit FieldWriter(const Rephrase* rephrase) : rephrase_(rephrase) {}
 
   template <class T>
@@ -86,7 +86,7 @@ class FieldWriter {
     return list;
   }
   [[nodiscard]] OrderedJson encode(Vec3& v) const { return OrderedJson::array({v.x, v.y, v.z}); }
-  /// Order of text: w, x, y, z.
+  /// In the order w, x, y, z.
   [[nodiscard]] OrderedJson encode(Quat& q) const {
     return OrderedJson::array({q.w, q.x, q.y, q.z});
   }
@@ -143,7 +143,7 @@ class FieldReader {
     is_known_ = is_known_ && inner.isKnown();
   }
 
-  /// Whether every choice had one of its names.
+  /// Whether every choice read so far had a known name.
   [[nodiscard]] bool isKnown() const { return is_known_; }
 
  private:

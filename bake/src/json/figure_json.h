@@ -9,19 +9,19 @@ namespace galactic::bake {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// What becomes of the sentences for people in a report.
+/// Rewrites the sentences for people in a report.
 using Rephrase = std::function<std::string(const std::string&)>;
 
-/// The pack's entries of a report: one for each object, of other kinds one.
+/// The report's entries for a pack: one per object for an object set, one for other kinds.
 [[nodiscard]] OrderedJson reportEntries(const PackFigures& figures, const Rephrase& rephrase);
 
-/// How a report describes a pack that a world lists.
+/// A report's description of a pack that a world lists.
 [[nodiscard]] OrderedJson jsonOf(const LinkedPack& pack);
 
-/// Everything, for the cache. Worlds are never in it.
+/// All figures, for the cache, which never holds worlds.
 [[nodiscard]] OrderedJson jsonOf(const PackFigures& figures);
 
-/// The inverse. False where `json` is of another form; throws what nlohmann::json throws where a
+/// The inverse. Returns false if `json` has another form. Throws what nlohmann::json throws if a
 /// member is missing or has another type.
 [[nodiscard]] bool readFigures(const OrderedJson& json, PackFigures& figures);
 

@@ -12,11 +12,11 @@
 namespace galactic::bake {
 namespace {
 
-/// zlib's code for a window of 32 KiB in the wrapping of gzip.
+/// zlib's code for a window of 32 KiB in the gzip format.
 constexpr int kGzipWindow = 15 + 16;
 constexpr std::size_t kPieceBytes = std::size_t{64} << 10U;
 
-/// Ends the stream whatever happens.
+/// Owns a zlib stream.
 class Inflater {
  public:
   Inflater() : ready_(inflateInit2(&stream_, kGzipWindow) == Z_OK) {}
@@ -32,19 +32,19 @@ class Inflater {
   bool ready_;
 };
 
-/// The bytes that zlib is given at once are counted in an unsigned int.
+/// How many of `bytes` to give to zlib at once, which counts them in an unsigned int.
 uInt atOnce(std::size_t bytes) {
   return static_cast<uInt>(
       std::min<std::size_t>(bytes, std::numeric_limits<uInt>::max() / std::size_t{2}));
 }
 
-/// Inflates member after member of one file.
+/// Decompresses the members of one file, one after another.
 class Gunzip {
  public:
   Gunzip(std::span<const std::byte> bytes, const std::string& where, std::size_t max_bytes)
       : in_(bytes), where_(where), max_bytes_(max_bytes), piece_(kPieceBytes, '\0') {}
 
-  /// Calls `take` with the text, piece by piece. Returns its length.
+  /// Calls `take` with the text, piece by piece. Returns the length of the text.
   template <class Take>
   Result<std::size_t> run(const Take& take) {
     if (!inflater_.ready()) {
@@ -61,7 +61,7 @@ class Gunzip {
     return fail(ErrorCode::kInvalidInput, where_, std::move(message));
   }
 
-  /// One member, from the beginning of what is left.
+  /// Decompresses one member at the beginning of the remaining bytes.
   template <class Take>
   Result<void> member(const Take& take) {
     if (!isGzip(in_)) {
@@ -118,7 +118,7 @@ bool isGzip(std::span<const std::byte> bytes) {
 
 Result<std::string> gunzip(std::span<const std::byte> bytes, const std::string& where,
                            std::size_t max_bytes) {
-  // A text that is too long, and damage, are found before any memory is taken for it.
+  // Find damage, and text that is too long, before memory is allocated for the text.
   ASSIGN_OR_RETURN(const auto length, Gunzip(bytes, where, max_bytes).run([](std::string_view) {}));
   std::string text;
   text.reserve(length);

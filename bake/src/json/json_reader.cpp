@@ -14,7 +14,7 @@
 namespace galactic::bake {
 namespace {
 
-/// "a.b[17].c" as "a.b[].c": the same key of all elements of a list.
+/// Turns "a.b[17].c" into "a.b[].c", which is the same for all elements of a list.
 std::string withoutIndices(std::string_view place) {
   std::string plain;
   bool inside = false;
@@ -26,8 +26,7 @@ std::string withoutIndices(std::string_view place) {
   return plain;
 }
 
-/// Lists and objects inside each other: values are copied and printed by functions that call
-/// themselves.
+/// Maximum nesting depth of lists and objects, because recursive functions copy and print values.
 constexpr int kMostNesting = 100;
 
 }  // namespace
@@ -141,7 +140,7 @@ std::int64_t JsonReader::whole(const JsonNode& node, std::int64_t min, std::int6
     error(node.place, "expected a whole number");
     return 0;
   }
-  // Above the range of signed numbers the value would wrap around.
+  // Values beyond the signed range would wrap around.
   const bool huge = node.json->is_number_unsigned() &&
                     node.json->get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX);
   const std::int64_t value = huge ? INT64_MAX : node.json->get<std::int64_t>();
@@ -164,7 +163,7 @@ void JsonReader::numbers(const JsonNode& node, double farthest, std::span<double
       values[i] = value;
       continue;
     }
-    // Names its place.
+    // number() reports the element's place on an error.
     values[i] = number({&element, fmt::format("{}[{}]", node.place, i)}, -farthest, farthest);
   }
 }

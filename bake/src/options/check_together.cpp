@@ -13,7 +13,7 @@
 namespace galactic::bake {
 namespace {
 
-/// An option that says nothing unless another one is given.
+/// An option that has no effect unless another one is given.
 struct Need {
   std::string_view option;
   std::string_view other;
@@ -34,7 +34,8 @@ Result<void> checkDrawing(const DrawOptions& draw, const OptionReader& given) {
   return {};
 }
 
-/// Found before anything is baked, and where they are written.
+/// Checks the radii before anything is baked, so that the error names the place where they are
+/// given.
 Result<void> checkRadii(const std::vector<float>& radii, const OptionReader& given) {
   const auto found = std::ranges::adjacent_find(radii, std::greater_equal<>());
   if (found == radii.end()) return {};
@@ -59,7 +60,7 @@ Result<void> checkOne(const SceneJob& job, const OptionReader& given) {
   return checkDrawing(job.draw, given);
 }
 
-/// A collection's boxes stand in the frame of the mesh files.
+/// The boxes of a collection are in the frame of the mesh files.
 Result<void> checkOne(const ObjectJob& job, const OptionReader& given) {
   RETURN_IF_ERROR(checkRadii(job.shape.spheres.radii, given));
   if (!job.collection.empty() && (!job.import.up || job.import.transform)) {

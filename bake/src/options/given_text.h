@@ -13,14 +13,15 @@
 
 namespace galactic::bake {
 
-// What the fields of options share.
+// Helpers shared by the fields of options.
 
 template <class T>
 [[nodiscard]] std::span<const std::byte> memoryOf(const T& field) {
   return std::as_bytes(std::span(&field, 1));
 }
 
-/// A word as it would be typed; numbers as the shortest text that reads back as the same.
+/// A word as it would be typed. Numbers become the shortest text that reads back as the same
+/// number.
 [[nodiscard]] inline std::string textOf(const GivenWord& word) {
   return std::visit(
       [](const auto& value) -> std::string {

@@ -44,7 +44,7 @@ constexpr OptionInfo kSeedInfo{
     "Generate, and import of Habitat's in packs: the number from which the random ones are drawn; "
     "also instead of a recipe's"};
 
-/// Tolerances of spheres by name, meters.
+/// Named tolerances of sphere sets, meters.
 struct Tolerances {
   float eps = 0;
   float tau = 0;
@@ -126,7 +126,7 @@ void visitDrawing(DrawOptions& options, OptionVisitor& v) {
   v.internals(shared_textures);
 }
 
-/// The fields, of the struct of an object or of a robot, that spheres have in common.
+/// The sphere fields that the option structs of objects and robots share.
 template <class Length, class Count>
 struct SphereFields {
   Length& eps;

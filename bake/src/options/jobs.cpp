@@ -19,7 +19,7 @@ fs::path relativeTo(const fs::path& folder, const fs::path& file) {
   return fs::absolute(file, problem).lexically_normal().lexically_relative(folder);
 }
 
-/// Collects the options that have a value; `rename` says what becomes of the paths in them.
+/// Collects the options that have a value, with `rename` applied to the paths in them.
 template <class Rename>
 class ValueList final : public OptionVisitor {
  public:
@@ -40,7 +40,7 @@ class PathList final : public OptionVisitor {
  public:
   using OptionVisitor::option;
   void option(const OptionInfo& /*info*/, OptionField& field) override {
-    // Packages are folders, of which only some files are read.
+    // Packages are folders, from which only some files are read.
     if (field.kind() == OptionKind::kNamedPath) return;
     for (const fs::path* path : field.paths()) paths.push_back(*path);
   }
@@ -71,7 +71,7 @@ std::vector<fs::path> inputsOf(const Job& job) {
                     job);
 }
 
-/// What decides the bytes and is neither an option nor a file.
+/// What affects the pack's bytes but is neither an option nor a file.
 std::string internalsOf(const Job& job) {
   return std::visit(
       Overload{[](const SceneJob& one) {

@@ -13,10 +13,10 @@
 namespace galactic::bake {
 namespace {
 
-/// Beyond every length, factor and count that is meant.
+/// Larger than any sensible length, factor or count.
 constexpr double kMostNumber = 1e12;
 
-/// Numbers, or why they are none.
+/// Numbers, or the reason why the value is not a list of numbers.
 struct ReadNumbers {
   std::vector<double> values;
   std::string fault;
@@ -47,7 +47,7 @@ void readText(std::string_view text, ReadNumbers& numbers) {
   }
 }
 
-/// The numbers of all words, texts split at their commas.
+/// The numbers in all words, with texts split at their commas.
 ReadNumbers readNumbers(const GivenValue& value) {
   ReadNumbers numbers;
   for (const GivenWord& word : value.words) {
@@ -73,7 +73,7 @@ bool isWithin(double number, const OptionRange& range) {
   return is_high_enough && number <= std::min(range.most, kMostNumber);
 }
 
-/// A field that holds one value, or none where it is optional.
+/// A field that holds one value, or none if it is optional.
 template <class Field>
 class SingleField : public OptionField {
  public:
@@ -256,7 +256,7 @@ class CountsField final : public OptionField {
 
 class DistancesField final : public OptionField {
  public:
-  /// `fewest`: how many of the two ends have to be given. `is_default` may be null.
+  /// `fewest`: how many of the two ends must be given. `is_default` may be null.
   DistancesField(DistanceRange& field, std::size_t fewest, bool* is_default)
       : field_(field), fewest_(fewest), is_default_(is_default) {}
   [[nodiscard]] OptionKind kind() const override { return OptionKind::kNumbers; }

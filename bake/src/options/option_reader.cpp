@@ -17,7 +17,7 @@ bool isEmpty(const GivenValue& value) {
          });
 }
 
-/// What is wrong whatever the option is; empty: nothing.
+/// A fault that any option may have; empty if there is none.
 std::string faultOf(const GivenOption& given, const OptionField& field) {
   if (std::any_of(given.values.begin(), given.values.end(), isEmpty)) {
     return "has an empty value; give one, or leave the option out";

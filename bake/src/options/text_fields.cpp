@@ -122,7 +122,7 @@ class TextField final : public OptionField {
   std::string& field_;
 };
 
-/// Texts, each given once; or names, which commas separate.
+/// A list of texts, one per occurrence of the option, or of names separated by commas.
 class TextsField final : public OptionField {
  public:
   TextsField(std::vector<std::string>& field, bool are_names)

@@ -12,7 +12,7 @@
 namespace galactic::bake {
 namespace {
 
-/// A text, number or truth value; none where it is something else.
+/// A text, number or truth value as a word; none for other values.
 std::optional<GivenWord> wordOf(const TomlValue& value) {
   if (const auto* truth = std::get_if<bool>(&value.value)) return *truth;
   if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return *whole;
@@ -21,7 +21,7 @@ std::optional<GivenWord> wordOf(const TomlValue& value) {
   return std::nullopt;
 }
 
-/// The words of a list without lists in it.
+/// The words of a list; none if it contains lists or tables.
 std::optional<std::vector<GivenWord>> wordsOf(const TomlArray& list) {
   std::vector<GivenWord> words;
   for (const TomlValue& value : list) {

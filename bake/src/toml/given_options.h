@@ -10,9 +10,9 @@
 
 namespace galactic::bake {
 
-/// The options of a table in `file`, without those that `passes` lets pass. A list of numbers is
-/// one value, a list of texts or of lists are several, a table gives NAME=VALUE each. Fails with
-/// kInvalidInput on values that are none of these.
+/// The options in a table of `file`, except keys that `passes` accepts. A list of numbers is one
+/// value, each element of a list of texts or of lists is a value, and each entry of a table becomes
+/// NAME=VALUE. Fails with kInvalidInput on other values.
 [[nodiscard]] Result<std::vector<GivenOption>> givenIn(
     const TomlTable& table, const std::string& file,
     const std::function<bool(std::string_view)>& passes = {});

@@ -18,14 +18,14 @@
 
 namespace galactic::bake {
 
-/// What a number may be.
+/// The allowed range of a number.
 struct NumberRange {
   double min = -std::numeric_limits<double>::max();
   double max = std::numeric_limits<double>::max();
   std::string_view unit;
 };
 
-/// The first error of a recipe; later ones are not worth reading.
+/// Keeps the first error of a recipe and ignores later ones.
 class FirstError {
  public:
   explicit FirstError(std::string file) : file_(std::move(file)) {}
@@ -47,8 +47,8 @@ class FirstError {
   std::optional<Error> error_;
 };
 
-/// One table of a recipe, asked key by key; at the end, keys that nobody asked for are errors.
-/// Values that are missing or wrong are reported to the FirstError and answered with a default.
+/// One table of a recipe, queried key by key. finish() reports keys that were never queried.
+/// Missing or wrong values are reported to the FirstError, and a default is returned.
 class RecipeTable {
  public:
   RecipeTable(const TomlTable& table, std::string name, std::uint32_t line, FirstError& errors)
@@ -96,7 +96,7 @@ class RecipeTable {
     return value == nullptr ? RecipeName{} : nameOf(*value, full(key));
   }
 
-  /// `count` numbers, or none when the key is absent.
+  /// kCount numbers, or none if the key is absent.
   template <std::size_t kCount>
   std::optional<std::array<double, kCount>> numbers(std::string_view key,
                                                     const NumberRange& range) {
@@ -120,7 +120,7 @@ class RecipeTable {
     return numbers;
   }
 
-  /// The table of a key; null when it is absent.
+  /// The table of a key; null if it is absent.
   const TomlTable* table(std::string_view key) {
     const TomlValue* value = find(key);
     if (value == nullptr) return nullptr;
@@ -136,7 +136,7 @@ class RecipeTable {
     return table(key);
   }
 
-  /// The list of a key; null when it is absent.
+  /// The list of a key; null if it is absent.
   const TomlArray* list(std::string_view key) {
     const TomlValue* value = find(key);
     if (value == nullptr) return nullptr;
@@ -159,8 +159,7 @@ class RecipeTable {
     return checkedNumber(value, full(key), range);
   }
 
-  /// Reports keys that nobody asked for; then those that are missing, because a misspelt key is
-  /// both.
+  /// Reports unknown keys before missing ones, because a misspelled key is both.
   void finish() {
     for (const auto& [key, value] : table_) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
@@ -173,7 +172,7 @@ class RecipeTable {
   [[nodiscard]] std::string full(std::string_view key) const {
     return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
   }
-  /// "base", "joints[2]"; empty of the outermost table.
+  /// Such as "base" or "joints[2]"; empty for the outermost table.
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint32_t line() const { return line_; }
   [[nodiscard]] FirstError& errors() { return errors_; }

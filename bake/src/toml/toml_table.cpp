@@ -18,17 +18,18 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::size_t kMaxTomlBytes = std::size_t{1} << 20U;
-/// The parser limits the depth of values, but not of keys, each part of which is a table in a
-/// table.
+/// Maximum number of parts of a key. The parser limits the depth of values, but not of keys, each
+/// part of which is a nested table.
 constexpr std::size_t kMostKeyParts = 32;
 
-/// Looks for dotted keys before the parser sees them: it and whoever walks its tree calls itself
-/// for each part.
+/// Checks dotted keys before the parser sees them, because the parser, and code that walks its
+/// tree, recurse for each part.
 class DottedKeys {
  public:
   explicit DottedKeys(std::string_view text) : text_(text) {}
 
-  /// The line, from 1, where a key or the name of a table has more than kMostKeyParts parts.
+  /// The first line, from 1, in which a key or the name of a table has more than kMostKeyParts
+  /// parts.
   std::optional<std::size_t> lineOfDeepest() {
     std::size_t parts = 1;
     while (at_ < text_.size()) {
@@ -50,7 +51,7 @@ class DottedKeys {
   }
 
  private:
-  /// Moves behind the string that begins here. One that has no end is the parser's to report.
+  /// Skips the string that begins here. The parser reports one without an end.
   void skipString(char quote) {
     const std::string three(3, quote);
     const bool is_long = text_.substr(at_, 3) == three;
@@ -105,7 +106,7 @@ TomlTable convertTable(const toml::table& table) {
   TomlTable converted;
   for (const auto& [key, node] : table) {
     converted.push_back({.key = std::string(key.str()), .value = convert(node)});
-    // The key's line says more than the line where a table's first key stands.
+    // The key's line is more useful than the line of a table's first key.
     converted.back().value.line = key.source().begin.line;
   }
   return converted;

@@ -13,10 +13,10 @@ namespace galactic::bake {
 struct TomlValue;
 struct TomlEntry;
 using TomlArray = std::vector<TomlValue>;
-/// By key.
+/// Entries with their keys.
 using TomlTable = std::vector<TomlEntry>;
 
-/// A value of a TOML file; dates and times are delivered as text.
+/// A value of a TOML file. Dates and times become text.
 struct TomlValue {
   std::variant<bool, std::int64_t, double, std::string, TomlArray, TomlTable> value;
   /// Line in the file, from 1.
@@ -28,11 +28,11 @@ struct TomlEntry {
   TomlValue value;
 };
 
-/// The outermost table of a text. Fails with kInvalidInput: broken TOML (`where` and its line),
-/// keys of very many parts, more than 1 MiB.
+/// The outermost table of a text. Fails with kInvalidInput if the TOML is malformed (naming `where`
+/// and the line), if a key has too many parts, or if the text is longer than 1 MiB.
 [[nodiscard]] Result<TomlTable> parseToml(std::string_view text, const std::string& where);
 
-/// The same of a file; fails with kIo, too (missing, unreadable or a folder).
+/// The same for a file. Also fails with kIo (missing, unreadable or a folder).
 [[nodiscard]] Result<TomlTable> readToml(const std::filesystem::path& path);
 
 }  // namespace galactic::bake
