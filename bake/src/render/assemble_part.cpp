@@ -14,25 +14,25 @@
 namespace galactic::bake {
 namespace {
 
-/// The same number in another form (-0) must not keep vertices apart.
+/// Adding 0 turns -0 into 0: different bytes for the same number must not keep vertices apart.
 Vec3 rounded(const std::array<double, 3>& p) {
   return {static_cast<float>(p[0]) + 0.0F, static_cast<float>(p[1]) + 0.0F,
           static_cast<float>(p[2]) + 0.0F};
 }
 
 bool canBePlaced(const std::array<double, 3>& p) {
-  // A comparison with NaN is false.
+  // Comparisons with NaN are false.
   return std::all_of(p.begin(), p.end(),
                      [](double value) { return std::abs(value) <= kMaxCoordinate; });
 }
 
-/// v down from the image's top, and nothing that is not finite.
+/// Texture coordinates with v down from the top of the image; {0, 0} if they are not finite.
 std::array<float, 2> imageUv(const std::array<float, 2>& uv) {
   if (!std::isfinite(uv[0]) || !std::isfinite(uv[1])) return {0, 0};
   return {uv[0] + 0.0F, 1.0F - uv[1]};
 }
 
-/// The texture alone says what is cut out, as the material was chosen for it.
+/// The color without its alpha, because only the texture's alpha cuts out parts.
 std::uint32_t opaqueColor(const std::array<float, 4>& linear) {
   constexpr std::uint32_t kOpaque = 0xFF000000;
   return surfaceColor(linear) | kOpaque;
@@ -66,14 +66,14 @@ Result<void> appendPlaced(const PlacedMesh& placed, const RenderSource& source, 
   return {};
 }
 
-/// The same triangle with its least corner first: the direction stays.
+/// The same triangle, rotated so that its least index comes first; keeps the winding.
 Triangle turned(const Triangle& t) {
   if (t[0] <= t[1] && t[0] <= t[2]) return t;
   if (t[1] <= t[2]) return {t[1], t[2], t[0]};
   return {t[2], t[0], t[1]};
 }
 
-/// Drops all but the first of equal triangles.
+/// Removes duplicates, keeping the first of equal triangles.
 void dropRepeated(std::vector<Triangle>& triangles) {
   std::vector<std::pair<Triangle, std::uint32_t>> order;
   order.reserve(triangles.size());
@@ -92,12 +92,13 @@ void dropRepeated(std::vector<Triangle>& triangles) {
   triangles.resize(kept);
 }
 
-/// What a vertex and a triangle take until they are welded: as measured on 180 million vertices.
+/// Memory that a vertex and a triangle take until they are welded, as measured on 180 million
+/// vertices.
 constexpr double kBytesPerVertex = 50;
 constexpr double kBytesPerTriangle = 40;
 
-/// Room for all meshes of a part at once: a vector that makes room for one after the other moves
-/// what it has each time, and a part may have 200,000.
+/// Reserves memory for all meshes of a part at once. Otherwise the vectors would move their content
+/// again and again, as a part may have 200,000 meshes.
 Result<PartMesh> emptyMesh(const RenderPart& part) {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
@@ -186,7 +187,7 @@ std::vector<PartMesh> connectedPieces(const PartMesh& mesh) {
   }
   std::vector<PartMesh> pieces;
   std::vector<std::uint32_t> piece_of(numbers.count, kNone);
-  // A vertex belongs to one piece, so one table serves all.
+  // Each vertex belongs to only one piece, so all pieces can share one table.
   std::vector<std::uint32_t> moved_to(mesh.vertices.size(), kNone);
   for (const Triangle& triangle : mesh.triangles) {
     std::uint32_t& number = piece_of[sets.find(numbers.number_of[triangle[0]])];

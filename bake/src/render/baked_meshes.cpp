@@ -19,7 +19,7 @@ std::span<const std::uint8_t> texelsOf(const BakedMaterials& materials,
       .subspan(texture.first_byte, textureBytes(texture.size, texture.format));
 }
 
-/// Textures by what decides that they can be equal.
+/// Finds textures with given texels by a hash.
 class TextureIndex {
  public:
   explicit TextureIndex(const BakedMaterials& materials) : materials_(materials) {
@@ -28,7 +28,7 @@ class TextureIndex {
     }
   }
 
-  /// The texture with these texels, if there is one.
+  /// The index of the texture with these texels, or -1.
   [[nodiscard]] std::int32_t find(const BakedTexture& texture,
                                   std::span<const std::uint8_t> texels) const {
     const auto [begin, end] = by_hash_.equal_range(hashOf(texels));
@@ -54,7 +54,7 @@ class TextureIndex {
   std::uint32_t count_ = 0;
 };
 
-/// Where each texture of `more` went.
+/// Adds the textures of `more` and returns their new indices.
 std::vector<std::int32_t> appendTextures(BakedMaterials& materials, const BakedMaterials& more) {
   constexpr std::size_t kAlignment = 32;
   TextureIndex index(materials);
@@ -77,7 +77,7 @@ std::vector<std::int32_t> appendTextures(BakedMaterials& materials, const BakedM
   return moved;
 }
 
-/// Where each name of `more` went.
+/// Adds the names of `more` and returns their new indices.
 std::vector<std::uint16_t> appendNames(std::vector<std::string>& names,
                                        const std::vector<std::string>& more) {
   std::map<std::string, std::uint16_t, std::less<>> numbers;

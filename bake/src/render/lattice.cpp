@@ -16,7 +16,7 @@ namespace {
 
 using Point = std::array<std::int32_t, 3>;
 
-/// Triangles of one kind of surface, seen from one side or both.
+/// The triangles with the same surface key that are visible from one side or from both.
 struct Group {
   SurfaceKey surface;
   bool two_sided = false;
@@ -28,7 +28,8 @@ std::int32_t onLattice(float coordinate, double step) {
   return static_cast<std::int32_t>(std::llround(static_cast<double>(coordinate) / step));
 }
 
-/// Largest extent of a triangle, meters: a lattice has to hold that much in a cluster.
+/// Largest extent of a triangle along an axis, meters. A cluster on the lattice must be able to
+/// span this.
 double largestExtent(std::span<const FinishedPiece> pieces) {
   float largest = 0;
   const auto spread = [](float a, float b, float c) {
@@ -46,7 +47,8 @@ double largestExtent(std::span<const FinishedPiece> pieces) {
   return static_cast<double>(largest);
 }
 
-/// The triangles by surface and sides, in a fixed order, as they came.
+/// Groups the triangles by surface and visible sides. The groups are in a fixed order, and the
+/// triangles in their original order.
 std::vector<Group> groupTriangles(std::span<const FinishedPiece> pieces, const RenderSource& source,
                                   double step) {
   std::map<std::tuple<std::uint16_t, std::uint16_t, bool>, Group> groups;
@@ -75,7 +77,7 @@ std::vector<Group> groupTriangles(std::span<const FinishedPiece> pieces, const R
   return listed;
 }
 
-/// Welds what has become equal on the lattice.
+/// Welds vertices that became equal on the lattice, and drops triangles that lost their area.
 void weld(Group& group) {
   const ByteNumbers numbers = numberValues(group.vertices);
   group.vertices = distinctValues(group.vertices, numbers);
@@ -135,7 +137,7 @@ bool fits(const LatticeCluster& cluster) {
          box.high[2] - box.low[2] <= kMostSteps;
 }
 
-/// The triangles `which` of a cluster as one of its own.
+/// A cluster of the triangles `which` of another one.
 LatticeCluster partOf(const LatticeCluster& cluster, std::span<const std::size_t> which) {
   LatticeCluster part = cluster;
   part.vertices.clear();
@@ -156,8 +158,8 @@ LatticeCluster partOf(const LatticeCluster& cluster, std::span<const std::size_t
   return part;
 }
 
-/// Appends a cluster, cut where the gap between its triangles is widest until its parts span few
-/// steps: things of one surface may stand far apart.
+/// Appends a cluster. One that spans too many steps, because things with the same surface may be
+/// far apart, is cut repeatedly at the widest gap between its triangles until its parts fit.
 void appendFitting(LatticeCluster cluster, std::vector<LatticeCluster>& clusters) {
   if (fits(cluster)) {
     clusters.push_back(std::move(cluster));
@@ -199,7 +201,7 @@ std::vector<LatticeCluster> cutOnLattice(std::span<const FinishedPiece> pieces,
   return clusters;
 }
 
-/// Neighbors in space become neighbors in the list.
+/// Sorts the clusters such that neighbors in space become neighbors in the list.
 void sortInSpace(std::vector<LatticeCluster>& clusters) {
   if (clusters.empty()) return;
   std::vector<std::array<std::int64_t, 3>> centers;
@@ -244,7 +246,7 @@ LatticeModel cutModel(std::span<const FinishedPiece> pieces, const RenderSource&
                       unsigned threads) {
   LatticeModel model;
   model.step = kFinestStep;
-  // Rounding adds a step at most.
+  // Rounding adds at most one step.
   const double largest = largestExtent(pieces);
   while (model.step * static_cast<double>(kMostSteps - 1) < largest) model.step *= 2;
   model.clusters = cutOnLattice(pieces, source, model.step, threads);

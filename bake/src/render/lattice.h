@@ -7,9 +7,10 @@
 
 namespace galactic::bake {
 
-/// Puts finished pieces on the finest lattice, but not finer than kFinestStep, on which every
-/// triangle spans at most 65,535 steps, and cuts them into clusters that span no more. Corners at
-/// one position come to one lattice point; triangles that lose their area there are dropped.
+/// Snaps finished pieces to a lattice and cuts them into clusters. The lattice is the finest one
+/// (but not finer than kFinestStep) on which every triangle spans at most 65,535 steps; clusters do
+/// not span more either. Corners at the same position get the same lattice point. Triangles that
+/// lose their area are dropped.
 [[nodiscard]] LatticeModel cutModel(std::span<const FinishedPiece> pieces,
                                     const RenderSource& source, unsigned threads);
 

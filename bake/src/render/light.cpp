@@ -16,22 +16,24 @@
 namespace galactic::bake {
 namespace {
 
-/// Triangles at one place that face less than 40 degrees apart are one surface, which bends there.
+/// Triangles that meet with normals less than 40 degrees apart belong to one surface, which bends
+/// there.
 constexpr double kCosineOfBend = 0.766;
-/// Rays for each corner: with one pattern for all, neighbors err alike, which no eye sees.
+/// Rays per point. All points use the same pattern, so neighbors have similar errors, which are not
+/// visible.
 constexpr unsigned kRays = 64;
-/// Of a front with less of the light the other side shows as well: it may be the inside of
-/// something.
+/// If the front gets less than this share of the light, the back is measured, too, because the
+/// front may be the inside of something.
 constexpr double kDim = 0.25;
-/// What is left where no light gets.
+/// The share of light that remains where everything is occluded.
 constexpr double kDarkest = 0.3;
-/// Where more triangles meet, they share one point.
+/// If more triangle corners than this meet, they all share one point.
 constexpr std::size_t kMostMeeting = 256;
 
-/// All pieces of a part as one mesh: what is in the way of light.
+/// All pieces of a part as one mesh, which occludes the light.
 struct LitMesh {
   PartMesh mesh;
-  /// First triangle of each piece, and the end.
+  /// First triangle of each piece, and the total number.
   std::vector<std::size_t> first_triangle;
 };
 
@@ -50,7 +52,7 @@ LitMesh joined(const std::vector<FinishedPiece>& pieces) {
   return all;
 }
 
-/// Which way a triangle faces (zero where it has no area), and its area.
+/// A triangle's unit normal (zero if it has no area) and its area.
 struct Facing {
   Vec3d normal;
   double area = 0;
@@ -68,7 +70,7 @@ std::vector<Facing> facings(const PartMesh& mesh) {
   return all;
 }
 
-/// The points at which light is measured: one for each surface that passes a place.
+/// The points at which light is measured: one for each surface at a position.
 class LightPoints {
  public:
   explicit LightPoints(const PartMesh& mesh)
@@ -77,7 +79,7 @@ class LightPoints {
     positions.reserve(mesh.vertices.size());
     for (const RenderVertex& vertex : mesh.vertices) positions.push_back(vertex.position);
     const ByteNumbers places = numberValues(positions);
-    // Corners by place, in the order of the triangles.
+    // Corners by position, in the order of the triangles.
     std::vector<std::vector<Corner>> corners(places.count);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       for (std::uint32_t c = 0; c < 3; ++c) {
@@ -92,24 +94,24 @@ class LightPoints {
     }
   }
 
-  /// The points of the triangles' corners.
+  /// Indices of the points for the corners of each triangle.
   [[nodiscard]] const std::vector<Triangle>& triangles() const { return of_triangle_; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
   /// Mean of the triangles' normals, weighted with their area; not of unit length.
   [[nodiscard]] const std::vector<Vec3d>& normals() const { return normals_; }
 
  private:
-  /// A triangle and which of its corners.
+  /// A triangle and the number of its corner, 0 to 2.
   using Corner = std::pair<std::uint32_t, std::uint32_t>;
 
   std::uint32_t& pointOf(const Corner& corner) { return of_triangle_[corner.first][corner.second]; }
 
-  /// Whether a surface goes on from one triangle to another that meets it.
+  /// Whether the surface continues from one triangle to another.
   [[nodiscard]] bool bends(const Corner& from, const Corner& to) const {
     return dot(facings_[from.first].normal, facings_[to.first].normal) >= kCosineOfBend;
   }
 
-  /// One point for corners that are joined through bends.
+  /// Assigns one point to corners that are joined through bends.
   void number(const std::vector<Corner>& meeting) {
     constexpr std::uint32_t kUnset = 0xFFFFFFFF;
     const bool all = meeting.size() > kMostMeeting;
@@ -140,7 +142,7 @@ class LightPoints {
   std::vector<Vec3d> normals_;
 };
 
-/// The pieces of a part while light is added.
+/// The pieces of a part that are being lit.
 struct Scene {
   const std::vector<FinishedPiece>& pieces;
   const RenderSource& source;
@@ -148,7 +150,7 @@ struct Scene {
   LitMesh all;
 };
 
-/// From which sides the triangles of a piece get light.
+/// The sides on which a triangle of a piece is lit.
 LitSides sidesOf(const Scene& scene, const FinishedPiece& piece, const Triangle& triangle) {
   const std::uint16_t material = piece.mesh.vertices[triangle[0]].surface.material;
   if (!scene.lit[material]) return LitSides::kNone;
@@ -156,7 +158,7 @@ LitSides sidesOf(const Scene& scene, const FinishedPiece& piece, const Triangle&
   return both ? LitSides::kBoth : LitSides::kFront;
 }
 
-/// Openness of each point.
+/// Measures the openness of each point.
 Result<std::vector<Openness>> measure(const Scene& scene, const LightPoints& points,
                                       const RenderBakeOptions& options, unsigned threads) {
   constexpr std::size_t kKinds = 3;
@@ -179,7 +181,7 @@ Result<std::vector<Openness>> measure(const Scene& scene, const LightPoints& poi
   rays.dim = kDim;
   rays.least_distance = std::min(static_cast<float>(2 * options.error), rays.largest_distance / 2);
   ASSIGN_OR_RETURN(auto measured, ambientOcclusion(meshes, rays, threads));
-  // A point belongs to one kind, but where kinds meet without an edge.
+  // A point belongs to only one kind, unless kinds meet without an edge.
   std::vector<Openness> openness = std::move(measured[static_cast<std::size_t>(LitSides::kBoth)]);
   const auto& front = measured[static_cast<std::size_t>(LitSides::kFront)];
   for (const Triangle& triangle : triangles[static_cast<std::size_t>(LitSides::kFront)]) {
@@ -188,7 +190,7 @@ Result<std::vector<Openness>> measure(const Scene& scene, const LightPoints& poi
   return openness;
 }
 
-/// The part of a vector that turns with a part.
+/// Applies only the linear part of `m` to a direction.
 Vec3d turned(const Affine& m, const Vec3d& v) {
   return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
           m[8] * v.x + m[9] * v.y + m[10] * v.z};
@@ -198,8 +200,8 @@ Vec3d turned(const Affine& m, const Vec3d& v) {
 double lightAt(const Vec3d& normal, const Openness& openness) {
   const auto front = static_cast<double>(openness.front);
   const auto back = static_cast<double>(openness.back);
-  // The side that more light reaches, fading from one to the other: no seam shows where a front is
-  // about dim.
+  // Use the side that more light reaches, with a smooth transition, so that no seam shows where the
+  // openness of a front is near kDim.
   const double bright = std::min(front / kDim, 1.0);
   const double share = back > 0 ? bright + (1 - bright) * front / (front + back) : 1;
   const auto side = [](const Vec3d& n, double open) {
@@ -217,7 +219,8 @@ std::uint32_t colorTimes(std::uint32_t color, std::uint32_t light) {
   return product;
 }
 
-/// Gives the corners of a piece the colors of their points; those of unlit materials keep theirs.
+/// Multiplies the colors of a piece's corners by the light at their points. Corners of unlit
+/// materials keep their colors.
 void paint(PartMesh& mesh, std::span<const Triangle> points,
            const std::vector<std::uint32_t>& light, const std::vector<bool>& lit) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> painted;
@@ -259,7 +262,7 @@ std::vector<bool> litMaterials(const RenderSource& source, Lighting lighting) {
 }
 
 double lightByNormal(const std::array<double, 3>& normal) {
-  // From the sky, from one side of it, and from everywhere.
+  // Light from the sky, from one side of the sky, and from everywhere.
   constexpr double kSky = 0.25;
   constexpr double kKey = 0.4;
   constexpr double kEverywhere = 0.3;

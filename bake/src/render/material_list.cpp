@@ -7,7 +7,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Of meshes in files that know no materials.
+/// The color of meshes in files without materials.
 constexpr std::array<float, 4> kNeutral{0.6F, 0.6F, 0.6F, 1.0F};
 
 }  // namespace
@@ -16,7 +16,7 @@ bool hasLooks(const SourceAsset& asset, const SourceMesh& mesh) {
   if (!mesh.colors.empty()) return true;
   if (mesh.material >= asset.materials.size()) return false;
   const SourceMaterial& material = asset.materials[mesh.material];
-  // What readers call the material of files that know none.
+  // Readers give this name to the material of files without materials.
   return !material.base_color_texture.empty() ||
          (!material.name.empty() && material.name != "DefaultMaterial");
 }

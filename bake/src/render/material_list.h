@@ -12,28 +12,28 @@
 
 namespace galactic::bake {
 
-/// Whether the file of a mesh says what it looks like: by a named material, a texture or vertex
-/// colors.
+/// Whether the mesh's file defines its look by a named material, a texture or vertex colors.
 [[nodiscard]] bool hasLooks(const SourceAsset& asset, const SourceMesh& mesh);
 
-/// The materials of a RenderSource while its meshes are placed: those that are used, once each.
+/// Collects the materials that a RenderSource uses, once each, while its meshes are placed.
 class MaterialList {
  public:
   explicit MaterialList(RenderSource& source) : source_(source) {}
 
-  /// The material of a mesh of `asset`; without its texture when the mesh does not say where on it.
+  /// Adds the material of a mesh of `asset`, without its texture if the mesh has no texture
+  /// coordinates.
   std::uint32_t add(const SourceAsset& asset, const SourceMesh& mesh);
 
-  /// A plain color, linear RGBA.
+  /// Adds a plain color, linear RGBA.
   std::uint32_t addColor(const std::array<float, 4>& color, bool two_sided);
 
-  /// An image on a mesh of texture coordinates, tinted by a linear RGBA; its path is relative to
-  /// the folder of the robot's file.
+  /// Adds an image for meshes with texture coordinates, tinted by a linear RGBA. The path is
+  /// relative to the folder of the robot's file.
   std::uint32_t addImage(const std::string& image, const std::array<float, 4>& tint,
                          bool two_sided);
 
-  /// Bakes what was added since the last call, as bakeMaterials does; `files`: the images of the
-  /// asset that it came from.
+  /// Bakes the materials added since the last call, like bakeMaterials. `files`: the images of the
+  /// asset that they came from.
   Result<void> bake(const TextureFiles& files, const TextureBakeOptions& options, unsigned threads,
                     TextureLibrary* library);
 
@@ -43,7 +43,7 @@ class MaterialList {
   RenderSource& source_;
   std::map<std::pair<std::array<float, 4>, bool>, std::uint32_t> colors_;
   std::map<std::tuple<std::string, std::array<float, 4>, bool>, std::uint32_t> images_;
-  /// Of the asset at hand: by material, and whether without its texture.
+  /// Materials of the current asset, by material and whether its texture is left out.
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> of_asset_;
 };
 

@@ -29,8 +29,9 @@ Simplified simplify(const PartMesh& mesh, double error, const std::vector<bool>&
   const std::size_t count = mesh.vertices.size();
   const float scale = meshopt_simplifyScale(positions, count, sizeof(RenderVertex));
   if (!(scale > 0)) return {mesh.triangles, 0.0};
-  // This version takes no list of vertices to keep. But it keeps a vertex that more than two open
-  // edges meet at, and counts the edges of a triangle without area as such.
+  // This version of meshoptimizer does not accept a list of vertices to keep. But it keeps vertices
+  // at which more than two open edges meet, and it counts the edges of a degenerate triangle as
+  // open, so add one to each vertex to keep.
   std::vector<Triangle> input = mesh.triangles;
   for (std::uint32_t n = 0; n < kept.size(); ++n) {
     if (kept[n]) input.push_back({n, n, n});

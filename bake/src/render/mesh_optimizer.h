@@ -9,9 +9,9 @@
 
 namespace galactic::bake {
 
-// What meshoptimizer does for us, and the only place that names it.
+// Wraps meshoptimizer, which no other files name.
 
-/// For each element of `size` bytes the number of its value: equal bytes get equal numbers, which
+/// A number for the value of each element of `size` bytes. Equal bytes get equal numbers, which
 /// count up in the order of first use.
 struct ByteNumbers {
   std::vector<std::uint32_t> number_of;
@@ -25,7 +25,7 @@ template <class T>
   return numberBytes(values.data(), values.size(), sizeof(T));
 }
 
-/// One of each value of a vector, by the numbers of numberValues.
+/// The distinct values of a vector, in the order of the numbers from numberValues.
 template <class T>
 [[nodiscard]] std::vector<T> distinctValues(const std::vector<T>& values,
                                             const ByteNumbers& numbers) {
@@ -36,13 +36,13 @@ template <class T>
 
 struct Simplified {
   std::vector<Triangle> triangles;
-  /// How far the surface moved at most, meters, as the quadrics estimate.
+  /// The largest distance by which the surface moved, as estimated by the quadrics, meters.
   double error = 0;
 };
 
-/// Fewer triangles over the same vertices, the surface moved by up to `error` meters. What is equal
-/// by position moves together, so no crack opens between vertices that differ in the rest. `kept`:
-/// a mark for each vertex; what is marked at a position keeps all vertices there where they are.
+/// Reduces the triangles over the same vertices, moving the surface by up to `error` meters.
+/// Vertices at the same position move together, so no crack opens between vertices that differ only
+/// in other attributes. `kept`: a flag per vertex; a set flag pins all vertices at its position.
 [[nodiscard]] Simplified simplify(const PartMesh& mesh, double error,
                                   const std::vector<bool>& kept);
 

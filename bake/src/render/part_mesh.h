@@ -9,7 +9,7 @@
 
 namespace galactic::bake {
 
-/// What cannot be shared by two triangles of one cluster: material and semantic.
+/// Material and semantic, which all triangles of a cluster share.
 struct SurfaceKey {
   std::uint16_t material = 0;
   std::uint16_t semantic = 0;
@@ -17,10 +17,10 @@ struct SurfaceKey {
   friend bool operator==(const SurfaceKey&, const SurfaceKey&) = default;
 };
 
-/// A corner with all that is drawn of it. Two that are equal byte by byte are one.
+/// A vertex with all its attributes. Two vertices with equal bytes are the same vertex.
 struct RenderVertex {
   Vec3 position;
-  /// v down from the image's top.
+  /// Texture coordinates; v points down from the top of the image.
   std::array<float, 2> uv{};
   /// RGBA, sRGB, R lowest.
   std::uint32_t color = 0xFFFFFFFF;
@@ -28,19 +28,19 @@ struct RenderVertex {
 };
 static_assert(sizeof(RenderVertex) == 28, "compared byte by byte, so without padding");
 
-/// Welded triangles: of a whole part, or of a connected piece of it.
+/// Welded triangles of a whole part or of a connected piece of it.
 struct PartMesh {
   std::vector<RenderVertex> vertices;
   std::vector<Triangle> triangles;
 };
 
-/// All meshes of a part in its frame: placed in double precision and rounded once, mirrored ones
-/// turned round, equal corners welded; without triangles that have no area because two corners are
-/// one, or that are there twice. Fails as bakeRenderMeshes does.
+/// All meshes of a part in its frame. Positions are computed in double precision and rounded once,
+/// mirrored meshes get the opposite winding, and equal vertices are welded. Drops triangles with
+/// two equal corners, and duplicates. Fails like bakeRenderMeshes.
 [[nodiscard]] Result<PartMesh> assemblePart(const RenderPart& part, const RenderSource& source);
 
-/// The connected pieces of a mesh, in the order of their first triangles: triangles belong together
-/// when they touch at a position, whatever else differs.
+/// The connected pieces of a mesh, in the order of their first triangles. Triangles are connected
+/// if they share a position, whatever their other attributes.
 [[nodiscard]] std::vector<PartMesh> connectedPieces(const PartMesh& mesh);
 
 }  // namespace galactic::bake

@@ -11,19 +11,20 @@
 namespace galactic::bake {
 namespace {
 
-/// A closed piece all of whose edges are longer may be a room with the camera in it. Meters.
+/// A closed piece may be a room with the camera in it if all edges of its bounds are longer than
+/// this. Meters.
 constexpr double kRoomSize = 1.5;
-/// A closed piece with less volume than this times its area to the power of 1.5 is two sheets back
-/// to back: no inside to speak of.
+/// A closed piece with less volume than this times area^1.5 is two sheets back to back and has
+/// practically no inside.
 constexpr double kFlatVolume = 1e-9;
-/// Fewest triangles of what has a volume.
+/// Fewest triangles that can enclose a volume.
 constexpr std::size_t kFewestClosed = 4;
 
 /// An edge from its lower to its higher end.
 struct Edge {
   std::uint32_t low = 0;
   std::uint32_t high = 0;
-  /// Whether the triangle passes it from high to low.
+  /// Whether the triangle traverses the edge from high to low.
   bool backwards = false;
 
   friend auto operator<=>(const Edge&, const Edge&) = default;
@@ -41,7 +42,7 @@ bool isClosed(const std::vector<Triangle>& triangles, const std::vector<std::uin
   }
   std::sort(edges.begin(), edges.end());
   if (edges.size() % 2 != 0) return false;
-  // Sorted, each edge has to be there forwards, then backwards, and that once.
+  // In sorted order, each edge must occur exactly once forward and then once backward.
   for (std::size_t n = 0; n < edges.size(); n += 2) {
     const Edge& forwards = edges[n];
     const Edge& backwards = edges[n + 1];
@@ -63,7 +64,8 @@ bool isTwoSided(const PartMesh& piece, const RenderSource& source) {
   });
 }
 
-/// Whether a part of the room may be inside of a closed piece, which cannot cut it: all or none is.
+/// Whether a part of a room may be inside a closed piece. The piece cannot cut a room, so all of it
+/// would be inside.
 bool mayHoldRoom(const PieceShape& shape, const RenderSource& source) {
   const Bounds& bounds = shape.bounds;
   return std::ranges::any_of(source.rooms, [&](const Bounds& room) {
@@ -72,14 +74,14 @@ bool mayHoldRoom(const PieceShape& shape, const RenderSource& source) {
   });
 }
 
-/// Whether the piece is a solid that shows its outside only; turns it if it shows its inside.
+/// Whether the piece is a solid of which only the outside is visible. Flips it if it is inside out.
 bool showOutside(PartMesh& piece, const PieceShape& shape, const RenderSource& source) {
   if (!shape.closed || hasHoles(piece, source)) return false;
   if (*std::min_element(shape.size.begin(), shape.size.end()) > kRoomSize) return false;
   if (mayHoldRoom(shape, source)) return false;
   const double flat = kFlatVolume * std::pow(shape.area, 1.5);
   if (shape.volume > flat) return true;
-  // What a one-sided material shows is meant.
+  // The visible side of a one-sided material is intended.
   if (shape.volume >= -flat || !isTwoSided(piece, source)) return false;
   for (Triangle& triangle : piece.triangles) std::swap(triangle[1], triangle[2]);
   return true;

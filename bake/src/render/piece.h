@@ -7,15 +7,16 @@
 
 namespace galactic::bake {
 
-/// What a connected piece is like, before it is simplified.
+/// The shape of a connected piece before it is simplified.
 struct PieceShape {
-  /// Every edge, by position, has two triangles that pass it in opposite directions.
+  /// Whether every edge, by position, has exactly two triangles, which traverse it in opposite
+  /// directions.
   bool closed = false;
-  /// Of a closed piece: above 0 when its triangles face outwards. Cubic meters.
+  /// Volume of a closed piece, positive if its triangles face outward. Cubic meters.
   double volume = 0;
   double area = 0;
   Bounds bounds;
-  /// Edges of the bounds, meters.
+  /// Edge lengths of the bounds, meters.
   std::array<double, 3> size{};
 };
 [[nodiscard]] PieceShape measurePiece(const PartMesh& piece);
@@ -23,14 +24,14 @@ struct PieceShape {
 /// A connected piece, ready for clusters.
 struct FinishedPiece {
   PartMesh mesh;
-  /// Whether no triangle of it needs to be seen from behind, whatever its material says.
+  /// Whether its triangles need not be visible from behind, even if their material is two-sided.
   bool has_outside = false;
-  /// Largest distance by which simplification moved its surface, as measured, meters.
+  /// Measured largest distance by which simplification moved the surface, meters.
   float error = 0;
 };
 
-/// Decides from which sides the piece is seen, turns it outside out if it has to be, and simplifies
-/// it. `error`: what the user allows, meters.
+/// Decides from which sides the piece is visible, flips it if it is inside out, and simplifies it.
+/// `error`: the largest error that the user allows, meters.
 [[nodiscard]] FinishedPiece finishPiece(PartMesh piece, const RenderSource& source, double error);
 
 }  // namespace galactic::bake

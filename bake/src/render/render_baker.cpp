@@ -18,10 +18,10 @@
 namespace galactic::bake {
 namespace {
 
-/// Materials and semantics are numbered in 16 bits.
+/// The numbers of materials and semantics have 16 bits.
 constexpr std::size_t kMostNumbers = 65536;
 
-/// A part on its way to the pools.
+/// A baked part before it is added to the pools.
 struct PartWork {
   LatticeModel model;
   RenderModelFigures figures;
@@ -46,8 +46,9 @@ Result<void> checkSource(const RenderSource& source) {
   return {};
 }
 
-/// Adds what a lattice moves corners by that is coarser than the finest one, where that counts
-/// beside the error allowed: one large triangle makes it so for all.
+/// Adds to the error how far the lattice moves corners, if it is coarser than the finest one and
+/// the distance is relevant compared with the allowed error. One large triangle makes the lattice
+/// coarse for all.
 void addLatticeError(double allowed, PartWork& work) {
   constexpr double kCounts = 0.1;
   const double step = work.model.step;
@@ -107,7 +108,7 @@ void countSource(const SourceMesh& mesh, BakedRenderMeshes& meshes) {
 Result<BakedRenderMeshes> bakeRenderMeshes(const RenderSource& source,
                                            const RenderBakeOptions& options, unsigned threads) {
   RETURN_IF_ERROR(checkSource(source));
-  // Many parts at once, or the pieces of one.
+  // Work on many parts at once, or on the pieces of one part.
   const bool alone = source.parts.size() < threads;
   std::vector<std::optional<Result<PartWork>>> work(source.parts.size());
   parallelFor(alone ? 1 : threads, work.size(), [&](std::size_t n) {

@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tints nothing.
+/// The neutral tint.
 constexpr std::array<float, 4> kWhite{1, 1, 1, 1};
 
-/// Semantic ids of names, in the order in which they come.
+/// Assigns semantic ids to names in the order of their first use.
 class SemanticNames {
  public:
   explicit SemanticNames(std::vector<std::string>& names) : names_(names) {}
@@ -58,7 +58,7 @@ std::uint32_t addOwnMesh(Surface surface, RenderSource& source) {
   return static_cast<std::uint32_t>(source.own_meshes.size() - 1);
 }
 
-/// Places the shapes that are drawn of a robot's links.
+/// Places the drawn shapes of a robot's links.
 class RobotPlacer {
  public:
   RobotPlacer(const SourceRobot& robot, RenderSource& source)
@@ -68,7 +68,7 @@ class RobotPlacer {
                      TextureLibrary* library) {
     placed_.resize(robot_.links.size());
     for (const SourceLink& link : robot_.links) source_.semantics.push_back(link.name);
-    // Asset by asset: each has its own embedded images.
+    // Goes asset by asset, because each has its own embedded images.
     for (std::uint32_t mesh = 0; mesh < robot_.meshes.size(); ++mesh) {
       for (std::size_t link = 0; link < robot_.links.size(); ++link) placeMesh(mesh, link);
       if (source_.materials.size() == source_.baked.materials.size()) continue;
@@ -102,7 +102,8 @@ class RobotPlacer {
     }
   }
 
-  /// Collision meshes that stand in are plain, whatever looks their files give them.
+  /// Collision meshes that stand in for lost visuals get a plain color, whatever look their files
+  /// define.
   std::uint32_t materialOf(const LinkShape& shape, const SourceAsset& asset, const SourceMesh& mesh,
                            bool stands_in) {
     if (stands_in) return materials_.addColor(kPlainColor, isTwoSided(asset, mesh));

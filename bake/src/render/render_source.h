@@ -9,11 +9,11 @@
 
 namespace galactic::bake {
 
-// What the render bake makes of a scene, an object and a robot. `folder` is where the textures are
-// that the materials name; `threads` and `library` are those of bakeMaterials. The asset or robot
-// has to outlive the result. Fail as bakeMaterials does.
+// The input of the render bake for a scene, an object and a robot. `folder` holds the textures that
+// the materials name; `threads` and `library` are those of bakeMaterials. The asset or robot must
+// outlive the result. All fail like bakeMaterials.
 
-/// One part; a semantic id per name of a node. Nodes beyond 65,535 names share one.
+/// One part, with a semantic id for each node name. All names beyond 65,535 share one id.
 [[nodiscard]] Result<RenderSource> sceneRenderSource(const SourceAsset& scene,
                                                      const std::filesystem::path& folder,
                                                      const TextureBakeOptions& options,
@@ -27,18 +27,18 @@ namespace galactic::bake {
                                                       unsigned threads = 1,
                                                       TextureLibrary* library = nullptr);
 
-/// A part for each link that is drawn (drawnShapes), in the link's frame: meshes with their
-/// materials, and primitives. A semantic id per link. The color of the robot's file is taken for
-/// primitives and for meshes that have none of their own (neither named material nor texture nor
-/// vertex colors) or whose looks it hides (LinkShape::hides_looks).
+/// A part for each link that is drawn (drawnShapes), in the link's frame, with its meshes, their
+/// materials, and primitives. Each link has its own semantic id. Primitives get the color of the
+/// robot's file, and so do meshes that have no look of their own (no named material, texture or
+/// vertex colors) or whose look the file overrides (LinkShape::hides_looks).
 [[nodiscard]] Result<RenderSource> robotRenderSource(const SourceRobot& robot,
                                                      const std::filesystem::path& folder,
                                                      const TextureBakeOptions& options,
                                                      unsigned threads = 1,
                                                      TextureLibrary* library = nullptr);
 
-/// Lights each link as it stands in the robot's start pose. `kinematics` are those of the robot
-/// that `source` was made of.
+/// Places each link for lighting as in the robot's start pose. `kinematics` belong to the robot
+/// that `source` was made from.
 void standInStartPose(RenderSource& source, const FlatKinematics& kinematics);
 
 }  // namespace galactic::bake

@@ -11,14 +11,14 @@
 namespace galactic::bake {
 namespace {
 
-/// How often corners are kept before the piece stays as it is.
+/// Number of attempts to keep corners before giving up on an asked error.
 constexpr int kRoundsOfKeeping = 5;
-/// Shares of the error that quadrics are asked for. On evenly curved surfaces a smaller one leaves
-/// fewer triangles, because fewer corners have to be kept; on flat ones with edges a larger one
-/// does.
+/// Shares of the allowed error to ask of the quadrics. A smaller share leaves fewer triangles on
+/// evenly curved surfaces, because fewer corners must be kept; a larger one does on flat surfaces
+/// with edges.
 constexpr std::array<double, 3> kSharesAsked{1, 0.5, 0.25};
-/// A corner's color that differs by more from the mean of its neighbors' is a detail to keep, of
-/// 255: about what an eye sees in a small image.
+/// A corner whose color differs from the mean of its neighbors' by more than this, of 255, is a
+/// detail to keep. About what the eye can see in a small image.
 constexpr int kColorDetail = 12;
 
 constexpr std::size_t kChannels = 3;
@@ -33,8 +33,8 @@ bool hasOneColor(const PartMesh& piece) {
   });
 }
 
-/// The corners whose color cannot be told from their neighbors'. Seams of colors are seams of
-/// the surface and need no mark.
+/// Flags the corners whose color cannot be inferred from their neighbors. Color seams are seams of
+/// the mesh and need no flag.
 std::vector<bool> coloredDetails(const PartMesh& piece) {
   std::vector<bool> details(piece.vertices.size());
   if (hasOneColor(piece)) return details;
@@ -75,9 +75,9 @@ Vec3d middleOf(const PartMesh& piece, const Triangle& t) {
          (1.0 / 3);
 }
 
-/// What became of a piece, for questions about how far the source lies from it. Neighbors in the
-/// source lie near the same triangles, so what was found for a corner answers most questions about
-/// the points around it without a search.
+/// A simplified piece to which the distance of source points is measured. Neighbors in the source
+/// lie near the same triangles, so the triangle found for a corner settles most points around it
+/// without a search.
 class SimplifiedSurface {
  public:
   /// Counts its work in `counted`.
@@ -96,19 +96,19 @@ class SimplifiedSurface {
     }
   }
 
-  /// Whether a corner of the source lies no further than `distance` from the surface.
+  /// Whether a corner of the source lies within `distance` of the surface.
   bool cornerWithin(std::uint32_t corner, const Triangle& around, double distance) {
     if (survives_[corner]) return true;
     return within(widen(piece_.vertices[corner].position), around, distance, facet_near_[corner]);
   }
 
-  /// The same for the middle of a triangle of the source.
+  /// Whether the middle of a source triangle lies within `distance` of the surface.
   bool middleWithin(const Triangle& triangle, double distance) {
     std::uint32_t facet = kNoFacet;
     return within(middleOf(piece_, triangle), triangle, distance, facet);
   }
 
-  /// The largest distance of the source's corners and middles, meters.
+  /// The largest distance of the source's corners and middles to the surface, meters.
   [[nodiscard]] double largestDistance() const {
     double largest = 0;
     const auto raise = [&](const Vec3d& point, std::uint32_t hint) {
@@ -125,7 +125,8 @@ class SimplifiedSurface {
   }
 
  private:
-  /// Tries what is near the corners of `around` first; `facet` becomes one that is near enough.
+  /// Whether `point` lies within `distance`. Tries `facet` and facets near the corners of `around`
+  /// first, and sets `facet` to one that is near enough.
   bool within(const Vec3d& point, const Triangle& around, double distance, std::uint32_t& facet) {
     const double squared = distance * distance;
     ++counted_.comparisons;
@@ -150,24 +151,25 @@ class SimplifiedSurface {
     return true;
   }
 
-  /// A search counts only what is nearer than its limit; what lies at the distance itself counts.
+  /// A search finds only what is nearer than its limit, but points exactly at the distance also
+  /// count.
   static constexpr double kJustBeyond = 1 + 1e-9;
 
   const PartMesh& piece_;
   MeasuredSimplified& counted_;
   TriangleTree tree_;
-  /// By corner of the source: a triangle of the surface that is near it, where one is known.
+  /// For each corner of the source, a triangle of the surface near it, if one is known.
   std::vector<std::uint32_t> facet_near_;
-  /// By corner of the source: whether it is a corner of the surface.
+  /// For each corner of the source, whether it is a corner of the surface.
   std::vector<bool> survives_;
 };
 
-/// Whether all of the source lies within `allowed` meters of the surface; if not, marks in `kept`
-/// the corners that are too far off.
+/// Whether all checked points of the source lie within `allowed` meters of the surface. Marks the
+/// corners that do not in `kept`.
 bool keepFarCorners(const PartMesh& piece, SimplifiedSurface& surface, double allowed,
                     std::vector<bool>& kept) {
   bool near = true;
-  // Those that were kept, too: the surface may have lost one whose neighbors all fell together.
+  // Checks kept corners, too: the surface may have lost one if all its neighbors collapsed.
   std::vector<bool> asked(piece.vertices.size());
   for (const Triangle& triangle : piece.triangles) {
     for (const std::uint32_t corner : triangle) {
@@ -189,18 +191,18 @@ bool keepFarCorners(const PartMesh& piece, SimplifiedSurface& surface, double al
   return near;
 }
 
-/// What simplifies a piece again and again, asking for less and keeping more.
+/// The state of repeated attempts to simplify a piece.
 struct Keeping {
   const PartMesh& piece;
   /// How far a point may lie from the result, meters.
   double allowed = 0;
-  /// The best so far, and the work that went into it.
+  /// The best result so far, and the work spent on it.
   MeasuredSimplified& best;
 };
 
-/// Simplifies by what quadrics estimate as `asked`, and keeps corners until all of the piece is
-/// near enough. Each round keeps more corners and so leaves more triangles: false when a round
-/// leaves no fewer than the best, or when it takes too many of them.
+/// Simplifies with the error `asked` of the quadrics, and keeps more and more corners until all of
+/// the piece is near enough. Each round leaves more triangles. Returns false if a round leaves no
+/// fewer triangles than the best result, or after too many rounds.
 bool improve(const Keeping& keeping, double asked, std::vector<bool> kept) {
   for (int round = 0; round <= kRoundsOfKeeping; ++round) {
     Simplified simplified = simplify(keeping.piece, asked, kept);
@@ -223,7 +225,8 @@ MeasuredSimplified simplifyWithin(const PartMesh& piece, double error) {
   bool found = false;
   for (const double share : kSharesAsked) {
     const bool better = improve({piece, error, best}, share * error, details);
-    // A smaller share leaves more triangles to begin with: after one that does not help, none does.
+    // A smaller share leaves more triangles to begin with, so after one that does not help, no
+    // other will.
     if (found && !better) break;
     found = found || better;
   }
