@@ -9,23 +9,24 @@
 
 namespace galactic::bake {
 
-/// A smaller change of a radius is rounding.
+/// Smaller changes of a radius, in meters, are considered rounding and not reported.
 inline constexpr double kRadiusChangeWorthMentioning = 1e-6;
 
-/// Hand-made spheres as spheres of a working set.
+/// Hand-made spheres with their radii snapped to a working set.
 struct SnappedSpheres {
   /// In the order of packs: radius descending, then x, y, z ascending.
   std::vector<SetSphere> spheres;
-  /// Of a radius, meters.
+  /// Largest change of a radius, meters.
   double largest_change = 0;
 };
 
-/// Gives each sphere the nearest radius of the working set (meters, ascending, not empty).
+/// Changes the radius of each sphere to the nearest one of the working set (meters, ascending, not
+/// empty).
 [[nodiscard]] SnappedSpheres snapRadii(const std::vector<HandSphere>& by_hand,
                                        const std::vector<float>& radii);
 
-/// Spheres as they are given, measured with the yardstick of the fitter: what it promises of its
-/// own is here what was measured. Fails as measureSphereSet.
+/// The given spheres as a sphere set, measured like those of the fitter. The members that the
+/// fitter guarantees for its own sets hold the measured values here. Fails like measureSphereSet.
 [[nodiscard]] Result<SphereSet> authoredSphereSet(const TriangleMesh& mesh,
                                                   std::vector<SetSphere> spheres,
                                                   const SphereSetOptions& options,

@@ -9,10 +9,10 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// Meters; below, spheres would be smaller than the rounding of their centers.
+/// Meters. Smaller spheres would be smaller than the rounding of their centers.
 constexpr float kLeastLength = 1e-4F;
 constexpr float kGreatestLength = 10.0F;
-/// How far the length of a normal may be from 1.
+/// How far the length of a normal may deviate from 1.
 constexpr float kUnitTolerance = 1e-3F;
 /// Meters.
 constexpr float kGreatestExtent = 10.0F;

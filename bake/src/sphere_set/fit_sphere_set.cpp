@@ -15,7 +15,7 @@ using sphere_set::Yardstick;
 
 namespace {
 
-/// Of the whole curve the set with the most spheres allowed.
+/// The set of the complete curve with the most spheres allowed.
 Result<SphereSet> fitWithin(const TriangleMesh& mesh, const SphereSetOptions& options,
                             unsigned threads) {
   auto curve = SphereCurve::begin(mesh, options, threads);

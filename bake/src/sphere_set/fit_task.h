@@ -8,7 +8,7 @@
 
 namespace galactic::bake::sphere_set {
 
-/// What one cover has to do, and on which solid. Lengths in meters.
+/// The solid to cover and the requirements for the cover. Lengths in meters.
 struct FitTask {
   const ExteriorSolid* solid = nullptr;
   /// Ascending.
@@ -17,20 +17,21 @@ struct FitTask {
   double tau = 0;
   std::optional<HalfSpace> support;
   unsigned threads = 1;
-  /// Places where a sphere of one radius is tried, about and at most.
+  /// Approximate maximum number of positions at which a sphere of one radius is tried.
   double most_places = 30'000;
 };
 
-/// A sphere that may be chosen.
+/// A sphere that may be chosen for a cover.
 struct Candidate {
-  /// Exactly as it would be stored.
+  /// Rounded exactly as it would be stored.
   Vec3d center;
   std::uint32_t radius_index = 0;
-  /// No point of the sphere is further outside the solid than this.
+  /// No point of the sphere is farther outside the solid than this.
   double protrusion = 0;
 };
 
-/// How far the center of a sphere may be outside (negative: must be inside) under `tau`.
+/// How far outside the solid a sphere's center may be if the sphere protrudes by at most `tau`; if
+/// negative, it must be that far inside.
 [[nodiscard]] inline double highestCenter(const FitTask& task, std::uint32_t radius_index) {
   return task.tau - task.radii[radius_index];
 }

@@ -9,15 +9,16 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// Up to so many spheres are compared with each point.
+/// Up to this number, all spheres are compared with each point.
 constexpr std::size_t kFewSpheres = 64;
-/// Most points of a cover are no further from a sphere than this share of eps.
+/// Most points of a cover are within this multiple of eps of a sphere.
 constexpr double kNearShare = 1.25;
 
-/// Right where some sphere is within the share of eps; elsewhere no sphere that near was found.
+/// Lowers the gaps of points near spheres. The result is exact where it is at most kNearShare *
+/// eps; elsewhere, no sphere is that near.
 void lowerNearSpheres(const FitTask& task, std::span<const Candidate> spheres,
                       std::span<const Vec3d> points, std::vector<double>& gaps) {
-  // Rounding must not leave a point out.
+  // Slightly more, so that rounding leaves no point out.
   constexpr double kRounding = 1 + 1e-9;
   const PointGrid grid(points, gridCell(task));
   for (const Candidate& sphere : spheres) {

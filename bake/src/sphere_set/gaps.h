@@ -6,14 +6,15 @@
 
 namespace galactic::bake::sphere_set {
 
-/// Distance of `p` to the sphere's inside: negative in it, meters.
+/// Signed distance of `p` to the sphere's surface, negative inside, meters.
 [[nodiscard]] double outside(const FitTask& task, const Candidate& sphere, const Vec3d& p);
 
-/// For each point its distance to the union of the spheres: negative inside, infinite without any.
+/// Signed distance of each point to the union of the spheres: negative inside, infinite without
+/// spheres.
 [[nodiscard]] std::vector<double> gapsOf(const FitTask& task, std::span<const Candidate> spheres,
                                          std::span<const Vec3d> points);
 
-/// The greatest of the gaps, at least 0.
+/// The largest of the gaps, at least 0.
 [[nodiscard]] double largestOf(std::span<const double> gaps);
 
 }  // namespace galactic::bake::sphere_set

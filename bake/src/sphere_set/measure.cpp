@@ -10,18 +10,18 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// Apart from the seeds that the solver uses.
+/// Different from the seeds that the solver uses.
 constexpr std::uint64_t kSeed = 99;
 constexpr double kSurfaceSamples = 20'000;
-/// Sample spacings are within these shares of the smallest radius where the area allows.
+/// Sample spacings are within these shares of the smallest radius if the area allows.
 constexpr double kFinestSpacing = 0.1;
 constexpr double kCoarsestSpacing = 0.3;
-/// Points on each sphere, and more where the sphere is large.
+/// Points per sphere; large spheres get more.
 constexpr double kLeastSpherePoints = 250;
 constexpr double kMostSpherePoints = 600;
 constexpr double kVolumeSamples = 40'000;
 
-/// A length, and how much surface it stands for.
+/// A length, weighted by the surface that it stands for.
 struct Weighted {
   double value = 0;
   double weight = 0;
@@ -58,7 +58,7 @@ double sampleSpacing(const FitTask& task) {
                     std::max(kCoarsestSpacing * radius, std::sqrt(area / (5 * kSurfaceSamples))));
 }
 
-/// The spheres that meet each sphere.
+/// For each sphere, the other spheres that intersect it.
 std::vector<std::vector<const Candidate*>> neighborsOf(const FitTask& task,
                                                        std::span<const Candidate> spheres) {
   std::vector<std::vector<const Candidate*>> neighbors(spheres.size());
@@ -176,7 +176,8 @@ std::uint64_t Yardstick::countThin(std::span<const Candidate> spheres) const {
   std::vector<Vec3d> open;
   for (std::size_t at = 0; at < samples_.size(); ++at) {
     if (gaps[at] <= task_.eps) continue;
-    // Most need no search over the solid: a small sphere right there will do.
+    // Most points need no search over the solid, because a small sphere at the point itself covers
+    // it.
     const Candidate around = sphereAround(task_, samples_[at]);
     const bool covers = outside(task_, around, samples_[at]) <= task_.eps;
     if (!covers || around.protrusion > task_.tau) open.push_back(samples_[at]);

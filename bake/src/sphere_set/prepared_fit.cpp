@@ -54,8 +54,8 @@ SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick, const Cov
   }
   std::sort(set.spheres.begin(), set.spheres.end(), comesFirst);
   set.quality = yardstick.measureLengths(cover.spheres);
-  // Where the solid's border is no facet (a small hole, the bottom of a crevice), a sphere may be
-  // further from the facets than from the solid: what was measured counts.
+  // Where no facet bounds the solid (at a small hole, or at the bottom of a crevice), a sphere may
+  // be farther from the facets than from the solid, so the measured values count.
   set.guaranteed_gap = std::max(cover.guaranteed_gap, set.quality.gap.max);
   set.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, set.quality.protrusion.max);
   const double slack = std::min(cover.slack, kSlackOfEps * task.eps);

@@ -10,7 +10,7 @@
 
 namespace galactic::bake::sphere_set {
 
-/// A mesh made ready, and the task on it.
+/// A mesh prepared for fitting, and the task.
 struct PreparedFit {
   std::unique_ptr<const ExteriorSolid> solid;
   FitTask task;
@@ -20,21 +20,21 @@ struct PreparedFit {
 [[nodiscard]] Result<PreparedFit> prepareFit(const TriangleMesh& mesh,
                                              const SphereSetOptions& options, unsigned threads);
 
-/// Why there is nothing to fit to: the surface is beyond the support's plane.
+/// The error that there is nothing to fit, because the surface is beyond the support's plane.
 [[nodiscard]] tl::unexpected<Error> nothingToCover();
-/// Whether an error is that one.
+/// Whether an error is nothingToCover().
 [[nodiscard]] bool isNothingToCover(const Error& error);
 
-/// The cover as a sorted set, measured, but for volume and thin points, and judged by the
-/// tolerances of `task`, whichever the cover was made for.
+/// The cover as a sorted, measured set, without volume and thin points. It is judged by the
+/// tolerances of `task`, even if the cover was made for others.
 [[nodiscard]] SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick,
                                     const Cover& cover);
 
-/// Fails with kInvalidInput where an option is out of range, naming the option.
+/// Fails with kInvalidInput if an option is out of range, naming the option.
 [[nodiscard]] Result<void> checkOptions(const SphereSetOptions& options);
 
-/// Fails with kInvalidInput where the mesh has no triangles or vertices that are no numbers, and
-/// with kUnsupported where it is too large.
+/// Fails with kInvalidInput if the mesh has no triangles or has coordinates that are not numbers,
+/// and with kUnsupported if it is too large.
 [[nodiscard]] Result<void> checkMesh(const TriangleMesh& mesh);
 
 }  // namespace galactic::bake::sphere_set

@@ -2,12 +2,13 @@
 #include <cstddef>
 #include <cstdint>
 
-// Included by sources compiled for wider instruction sets: plain data only, nothing of the standard
-// library, so that no inline function compiled there can end up in the rest of the program.
+// Included by sources compiled for wider instruction sets: has only plain data and uses nothing of
+// the standard library, so that no inline function compiled there can end up in the rest of the
+// program.
 
 namespace galactic::bake::sphere_set {
 
-/// Points side by side, and what each weighs.
+/// Points, one array per coordinate, and their weights.
 struct WeightedPoints {
   const float* x = nullptr;
   const float* y = nullptr;
@@ -16,7 +17,7 @@ struct WeightedPoints {
   std::size_t count = 0;
 };
 
-/// The points that a sphere covers are in this ball.
+/// The ball in which a sphere covers points.
 struct Ball {
   float x = 0;
   float y = 0;
@@ -24,14 +25,14 @@ struct Ball {
   float squared_reach = 0;
 };
 
-/// The weight of the points in `ball`. All versions give the same number: each point is judged
-/// alone, and whole numbers add up the same in any order.
+/// The sum of the weights of the points in `ball`. All versions give the same number: each point is
+/// tested alone, and the order of an integer sum does not matter.
 using BallWeight = std::int32_t (*)(const WeightedPoints& points, const Ball& ball);
 
 [[nodiscard]] std::int32_t ballWeightPortable(const WeightedPoints& points, const Ball& ball);
 [[nodiscard]] std::int32_t ballWeightAvx2(const WeightedPoints& points, const Ball& ball);
 
-/// The fastest that this machine runs.
+/// The fastest version for this machine.
 [[nodiscard]] BallWeight fastestBallWeight();
 
 }  // namespace galactic::bake::sphere_set

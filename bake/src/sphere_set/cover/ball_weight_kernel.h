@@ -4,7 +4,7 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// A loop that compilers vectorise for whatever the including file is compiled for.
+/// A loop that compilers vectorize for the instruction set of the including file.
 inline std::int32_t weightIn(const WeightedPoints& points, const Ball& ball) {
   const float* const x = points.x;
   const float* const y = points.y;

@@ -9,26 +9,29 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// Steps of a lattice across the disc that a sphere covers of a flat face: a large sphere that just
-/// fits saves many of the smallest, so it is worth more tries.
+/// Lattice steps per radius of the disk that a sphere covers on a flat face. A large sphere that
+/// just fits replaces many small ones, so it is worth more tries.
 constexpr double kStepsPerDisc = 12;
 constexpr double kStepsPerSmallestDisc = 6;
-/// Centers are pushed to this much below the highest level, meters: rounding must not lift them.
+/// Centers are pushed to this far below the highest level, meters, so that rounding does not lift
+/// them above it.
 constexpr double kBelowHighest = 1e-6;
-/// Of thin parts' spheres those are kept whose protrusion is this share of the radius above the
-/// least.
+/// Spheres for thin parts are kept if their protrusion exceeds the least one by at most this share
+/// of the radius.
 constexpr double kThinSlack = 0.13;
-/// Steps from a thin part's surface towards its middle, as shares of the radius.
+/// Steps from the surface of a thin part toward its middle: length as a share of the radius, and
+/// number.
 constexpr double kThinStep = 0.1;
 constexpr int kThinSteps = 12;
 
-/// A sphere of this radius with its center at `center`.
+/// A sphere with this radius and center.
 Candidate candidateAt(const FitTask& task, std::uint32_t radius_index, const Vec3d& center,
                       double signed_distance) {
   return {center, radius_index, std::max(0.0, signed_distance + task.radii[radius_index])};
 }
 
-/// The lattice point pushed outwards onto the highest level, or where it is when that fails.
+/// A sphere at the lattice point pushed outward onto the highest level, or at the point itself if
+/// that fails.
 Candidate pushedOutwards(const FitTask& task, std::uint32_t radius_index,
                          const LatticePoint& from) {
   const double highest = highestCenter(task, radius_index);
@@ -68,7 +71,7 @@ std::vector<Candidate> candidatesOfRadius(const FitTask& task, std::uint32_t rad
   return candidates;
 }
 
-/// The points whose flag is not set.
+/// The points whose flag in `covered` is not set.
 std::vector<Vec3d> openPoints(std::span<const Vec3d> points, std::span<const char> covered) {
   std::vector<Vec3d> open;
   for (std::size_t at = 0; at < points.size(); ++at) {
@@ -77,7 +80,7 @@ std::vector<Vec3d> openPoints(std::span<const Vec3d> points, std::span<const cha
   return open;
 }
 
-/// A point near the middle of the part under `p`, a point of the surface.
+/// A point near the middle of the part below the surface point `p`.
 Vec3d middleOfPart(const FitTask& task, const Vec3d& p) {
   const double step = kThinStep * task.radii.front();
   const SurfaceDistance start = task.solid->distance(p);
@@ -112,7 +115,7 @@ Candidate sphereAround(const FitTask& task, const Vec3d& p) {
 }
 
 bool staysAbove(const FitTask& task, const Vec3d& center, double radius) {
-  // A center that was lifted may be rounded back by as much.
+  // Rounding may move a lifted center back by this much.
   constexpr double kRounding = 1e-6;
   return heightAbove(task.support, center) >= radius - kRounding;
 }

@@ -69,7 +69,8 @@ CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> point
     const auto covers = [&](std::uint32_t row) {
       return squaredNorm(points[row] - sphere.center) <= reach * reach;
     };
-    // What it misses lies together: few, spread over a long list, find that first.
+    // The points that it misses are close together, so test a few points spread over a long list
+    // first.
     const std::size_t stride = std::max<std::size_t>(rows.size() / kProbes, 1);
     for (std::size_t n = 0; n < rows.size(); n += stride) {
       if (!covers(rows[n])) return false;
@@ -103,7 +104,8 @@ void markCovered(const CandidatePool& pool, std::size_t from, std::vector<char>&
 }
 
 double gridCell(const FitTask& task) {
-  // Half the reach of the smallest sphere: its queries touch few cells and few points in vain.
+  // Half the reach of the smallest sphere, so that its queries visit few cells and few points in
+  // vain.
   return (task.radii.front() + task.eps) / 2;
 }
 

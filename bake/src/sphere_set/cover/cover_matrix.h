@@ -9,7 +9,7 @@
 
 namespace galactic::bake::sphere_set {
 
-/// Lists of row numbers, one per column, in one piece of memory.
+/// A list of row numbers per column, in contiguous memory.
 class CoverMatrix {
  public:
   [[nodiscard]] std::size_t columns() const { return first_.size() - 1; }
@@ -21,7 +21,7 @@ class CoverMatrix {
     rows_.insert(rows_.end(), rows.begin(), rows.end());
     first_.push_back(rows_.size());
   }
-  /// Columns become rows: for each of `rows` rows the columns that hold it, ascending.
+  /// The transpose: for each of `rows` rows, the columns that hold it, ascending.
   [[nodiscard]] CoverMatrix transposed(std::size_t rows) const;
 
  private:
@@ -29,27 +29,27 @@ class CoverMatrix {
   std::vector<std::uint32_t> rows_;
 };
 
-/// Points to cover, spheres that may cover them, and which does: a point is covered by a sphere
-/// when it is no further than eps outside it.
+/// Candidate spheres and the points (rows) that each one covers. A sphere covers a point that is at
+/// most eps outside it.
 struct CandidatePool {
   std::vector<Candidate> candidates;
   CoverMatrix cover;
 };
 
-/// Appends `found` to the pool, but for those that cover none of the points in `grid`.
+/// Appends to the pool those of `found` that cover any of the points in `grid`.
 void appendCovering(const FitTask& task, const PointGrid& grid, std::span<const Candidate> found,
                     CandidatePool& pool);
 
-/// Drops candidates that a neighbor, within `distance` of them, makes needless: it covers all they
-/// cover and more, or the same with less protrusion.
+/// The pool without candidates that another one within `distance` makes redundant: it covers all
+/// they cover and more, or the same with less protrusion.
 [[nodiscard]] CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> points,
                                              const CandidatePool& pool, double distance);
 
-/// For each of `points` points whether a candidate from number `from` on covers it; added to what
-/// `covered` says.
+/// Sets the flag in `covered` of each point that a candidate with an index of at least `from`
+/// covers.
 void markCovered(const CandidatePool& pool, std::size_t from, std::vector<char>& covered);
 
-/// A cell size for point grids that suits spheres of the working set.
+/// A suitable cell size of point grids for the spheres of the working set.
 [[nodiscard]] double gridCell(const FitTask& task);
 
 }  // namespace galactic::bake::sphere_set

@@ -12,24 +12,25 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// Spacing of the points to cover: this share of eps, but never more nor fewer points than these.
+/// Spacing of the points to cover, as a share of eps, within these limits of the number of points.
 constexpr double kSpacingOfEps = 0.3;
 constexpr double kMostPoints = 15'000;
 constexpr double kLeastPoints = 400;
-/// The cover is checked on points this much denser.
+/// Spacing of the points for the check, as a share of the spacing of the points to cover.
 constexpr double kDenser = 0.4;
-/// A checked point is covered well enough when its gap is above eps by this share of the spacing.
+/// A point of the check counts as covered if its gap exceeds eps by at most this share of the
+/// check's spacing.
 constexpr double kTolerated = 0.5;
 
 constexpr std::uint64_t kPointSeed = 1;
 constexpr std::uint64_t kDenseSeed = 2;
 
-/// Candidates this many steps of the finest lattice apart are compared for dominance.
+/// Candidates within this many steps of the finest lattice are compared for dominance.
 constexpr double kDominanceSteps = 3;
 
-/// Steps in each direction of the fine lattices around chosen spheres.
+/// Steps in each direction of the fine lattice around a chosen sphere.
 constexpr int kFineSteps = 4;
-/// Rounds of refinement more than wanted while the cover still misses points of the check.
+/// Additional rounds of refinement while the cover still misses points of the check.
 constexpr int kMoreRounds = 2;
 
 static_assert((1 + kTolerated) * kDenser * kSpacingOfEps <= kSlackOfEps + 1e-9);
@@ -71,7 +72,7 @@ class CoverSolver {
     polish(task_, dense_, effort_.polish_sweeps, chosen_);
     Cover cover;
     cover.slack = (1 + kTolerated) * kDenser * spacing_;
-    // Between the checked points a gap can only be larger by their spacing.
+    // Between the checked points, a gap can be larger by at most their spacing.
     cover.guaranteed_gap = largestOf(gapsOf(task_, chosen_, dense_)) + kDenser * spacing_;
     for (const Candidate& sphere : chosen_) {
       cover.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, sphere.protrusion);
@@ -90,7 +91,7 @@ class CoverSolver {
     choose(pool, {}, effort_.search);
   }
 
-  /// Completes `selection` and makes it small.
+  /// Completes `selection`, reduces it, and stores it in chosen_.
   void choose(const CandidatePool& pool, Selection selection, std::uint64_t operations_each) {
     completeGreedily(pool, points_.size(), selection);
     removeRedundant(pool, points_.size(), selection);
@@ -105,7 +106,7 @@ class CoverSolver {
     return task_.eps + kTolerated * kDenser * spacing_;
   }
 
-  /// Points of the check that are too far from every chosen sphere.
+  /// The points of the check that are too far from every chosen sphere.
   [[nodiscard]] std::vector<Vec3d> uncovered() const {
     const std::vector<double> gaps = gapsOf(task_, chosen_, dense_);
     std::vector<Vec3d> open;
@@ -115,7 +116,7 @@ class CoverSolver {
     return open;
   }
 
-  /// Spheres for points that became rows late, thin ones included.
+  /// Candidates for points that were added later, including spheres for thin parts.
   [[nodiscard]] std::vector<Candidate> candidatesFor(std::span<const Vec3d> points) const {
     if (points.empty()) return {};
     Candidates found = findCandidates(task_, points);
@@ -123,8 +124,8 @@ class CoverSolver {
     return found.pool.candidates;
   }
 
-  /// Searches again with finer lattices around the chosen spheres, and with the points that the
-  /// cover so far misses. Returns whether there were none.
+  /// Searches again with finer lattices around the chosen spheres and with the points that the
+  /// cover misses. Returns whether it missed none.
   bool refine(int round) {
     std::vector<Vec3d> open;
     // The first round moves the spheres off the coarse lattice, which closes most gaps.
@@ -176,7 +177,7 @@ class CoverSolver {
     }
   }
 
-  /// Covers what the rounds left open, without a search.
+  /// Greedily covers the points that the rounds left uncovered.
   void topUp() {
     const std::vector<Vec3d> open = uncovered();
     if (open.empty()) return;
@@ -187,8 +188,8 @@ class CoverSolver {
     for (const std::uint32_t at : added) chosen_.push_back(found.pool.candidates[at]);
   }
 
-  /// Removes spheres without which every point of the check is covered well enough: points that
-  /// came late, and the moves since, may have made some needless.
+  /// Removes spheres without which every point of the check is still covered well enough. Spheres
+  /// for late points, and moves, may have made some redundant.
   void dropNeedless() {
     FitTask loose = task_;
     loose.eps = std::max(largestAccepted(), largestOf(gapsOf(task_, chosen_, dense_)));
@@ -204,11 +205,11 @@ class CoverSolver {
   const FitTask& task_;
   const Effort effort_;
   double spacing_;
-  /// What the search has to cover.
+  /// The points that the search must cover.
   std::vector<Vec3d> points_;
-  /// What the cover is checked on.
+  /// The points on which the cover is checked.
   const std::vector<Vec3d>& dense_;
-  /// From the coarse lattices.
+  /// Candidates from the coarse lattices.
   std::vector<Candidate> coarse_;
   std::vector<Candidate> chosen_;
 };

@@ -8,10 +8,10 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// Lattice points along an edge of the smallest cubes.
+/// Number of lattice points along an edge of the smallest cubes.
 constexpr std::int64_t kLeafEdge = 4;
 
-/// Lattice points at..at + edge - 1 along each axis.
+/// Lattice points at to at + edge - 1 along each axis.
 struct Cube {
   std::array<std::int64_t, 3> at{};
   std::int64_t edge = 0;

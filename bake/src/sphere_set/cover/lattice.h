@@ -6,11 +6,11 @@
 
 namespace galactic::bake::sphere_set {
 
-/// Which points of a lattice are wanted.
+/// Selects points of a lattice.
 struct LatticeBand {
   /// Meters between neighbors along each axis.
   double spacing = 0;
-  /// Signed distance to the surface from `lowest` to `highest`.
+  /// Only points whose signed distance to the surface is from `lowest` to `highest`.
   double lowest = 0;
   double highest = 0;
   /// Only points within `reach` of one of these; null: anywhere.
@@ -18,15 +18,14 @@ struct LatticeBand {
   double reach = 0;
 };
 
-/// A lattice point, as it would be stored, and where it is in the solid.
+/// A lattice point, rounded as it would be stored, and its distance to the surface.
 struct LatticePoint {
   Vec3d position;
   SurfaceDistance surface;
 };
 
-/// The points of the band of a lattice through the middle of the solid. Cubes of lattice points are
-/// skipped whole where the distance at their middle, which changes by no more than the way gone,
-/// rules them out.
+/// The points in the band of a lattice through the middle of the solid. Whole cubes of lattice
+/// points are skipped if the distance at their center, which is 1-Lipschitz, rules them out.
 [[nodiscard]] std::vector<LatticePoint> latticeInBand(const ExteriorSolid& solid,
                                                       const LatticeBand& band, unsigned threads);
 

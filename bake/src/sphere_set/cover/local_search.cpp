@@ -8,12 +8,14 @@ namespace {
 
 constexpr std::uint64_t kSeed = 7;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-/// Distances computed in one step; of more only an even share of the candidates is scored.
+/// Maximum number of distances computed per step. If there would be more, only an even sample of
+/// the candidates is scored.
 constexpr std::size_t kMostScores = 100'000;
-/// Four distances cost about what one step of the bookkeeping costs.
+/// Four distances cost about as much as one operation of the bookkeeping.
 constexpr std::size_t kScoresPerOperation = 4;
 constexpr std::uint64_t kOperationsPerIteration = 100;
-/// So many chosen candidates are looked through at no cost beyond that, and more at this rate.
+/// The cost of an iteration includes a scan of this many chosen candidates. More are charged at
+/// this rate.
 constexpr std::size_t kChosenPerIteration = 128;
 constexpr std::size_t kChosenPerOperation = 4;
 
@@ -33,7 +35,7 @@ LocalSearch::LocalSearch(const FitTask& task, std::span<const Vec3d> points,
     const Vec3 center = narrow(c.center);
     const auto reach = static_cast<float>(task.radii[c.radius_index] + task.eps);
     balls_.push_back({center.x, center.y, center.z, reach * reach});
-    // A little more, for the rounding of the distances.
+    // Slightly more than 4, to allow for the rounding of the distances.
     squared_width_ = std::max(squared_width_, 4.001F * reach * reach);
   }
 }
@@ -177,7 +179,8 @@ Selection LocalSearch::improve(const Selection& cover, std::uint64_t budget) {
       if (chosen_.size() <= 1) return smallest;
       removeAt(cheapest(kNone));
     }
-    // One less than the smallest cover so far; fewer where no candidate could come in last time.
+    // Remove one, so that the candidate added below makes a cover one smaller than the smallest so
+    // far. Not needed if no candidate could be added last time.
     if (chosen_.size() > 1 && chosen_.size() + 1 >= smallest.size()) removeAt(cheapest(tabu));
     const std::uint32_t candidate = bestForRandomRow();
     if (candidate != kNone) {

@@ -11,15 +11,17 @@ namespace {
 
 constexpr std::uint64_t kSeed = 17;
 constexpr int kTries = 8;
-/// The first step, as a share of the smallest radius, and what is left of it after each sweep.
+/// The first step as a share of the smallest radius, and the factor by which it shrinks after each
+/// sweep.
 constexpr double kFirstStep = 0.4;
 constexpr double kStepDecay = 0.82;
-/// Moves are this many steps long along each axis, or up to one more.
+/// Moves are up to kLeastOfStep + 1 steps long along each axis; their length is scaled by a random
+/// factor of at least kLeastOfStep.
 constexpr double kLeastOfStep = 0.3;
-/// What the square of a gap's excess over eps weighs: closing it comes first.
+/// Weight of the squared excess of a gap over eps, high enough that closing such gaps comes first.
 constexpr double kRepair = 1e4;
 
-/// A point that a sphere may have to cover, and its distance to all other spheres.
+/// A point that a sphere may have to cover, and its distance to the nearest of the other spheres.
 struct NearPoint {
   Vec3d position;
   double others = 0;
@@ -36,7 +38,7 @@ class Polisher {
         random_(kSeed) {}
 
   void sweep(double step) {
-    // No sphere moves further in a sweep.
+    // Upper bound of a sphere's movement in a sweep.
     const double furthest = kTries * (kLeastOfStep + 1) * step * std::sqrt(3.0);
     neighbors_ = neighborsWithin(2 * furthest);
     for (std::size_t at = 0; at < spheres_.size(); ++at) improve(at, step);
@@ -61,7 +63,7 @@ class Polisher {
     }
   }
 
-  /// Also measures how far the moved sphere protrudes.
+  /// Whether the move is allowed. Also sets the protrusion of `moved`.
   [[nodiscard]] bool allowed(const Candidate& sphere, Candidate& moved) const {
     const double radius = task_.radii[moved.radius_index];
     if (!staysAbove(task_, moved.center, radius)) return false;
@@ -70,8 +72,8 @@ class Polisher {
   }
 
   [[nodiscard]] std::vector<NearPoint> pointsNear(std::size_t at) const {
-    // The point of the largest gap is right at the end of its sphere's reach: rounding must not
-    // leave it out.
+    // The point with the largest gap is exactly at the end of its sphere's reach, so that rounding
+    // could leave it out.
     constexpr double kRounding = 1e-6;
     const double reach = task_.radii[spheres_[at].radius_index] + most_ + kRounding;
     std::vector<const Candidate*> neighbors;
@@ -86,14 +88,15 @@ class Polisher {
       for (const Candidate* other : neighbors) {
         point.others = std::min(point.others, outside(task_, *other, point.position));
       }
-      // What others hold inside costs nothing wherever this sphere goes.
+      // Points inside other spheres cost nothing, wherever this sphere goes.
       if (point.others > 0) near.push_back(point);
       return true;
     });
     return near;
   }
 
-  /// By sphere: the others that may cover what it may, when each is up to `margin` nearer.
+  /// For each sphere, the others that may cover the same points if the two come closer by up to
+  /// `margin`.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighborsWithin(double margin) const {
     constexpr double kRounding = 1e-6;
     const double largest = task_.radii.back() + most_;
@@ -111,7 +114,7 @@ class Polisher {
     return neighbors;
   }
 
-  /// Infinite where a gap would be too large.
+  /// The cost of a sphere; infinite if a gap would be too large.
   [[nodiscard]] double costOf(const Candidate& sphere, const std::vector<NearPoint>& near) const {
     double sum = 0;
     for (const NearPoint& point : near) {
@@ -130,10 +133,10 @@ class Polisher {
   std::span<const Vec3d> points_;
   std::vector<Candidate>& spheres_;
   PointGrid grid_;
-  /// No gap may be larger.
+  /// Largest allowed gap.
   double most_;
   Random random_;
-  /// By sphere, during a sweep.
+  /// Neighbors of each sphere during a sweep.
   std::vector<std::vector<std::uint32_t>> neighbors_;
 };
 

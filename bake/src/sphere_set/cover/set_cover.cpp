@@ -6,13 +6,13 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// How good it would be to choose a candidate.
+/// The value of choosing a candidate.
 struct Offer {
   std::size_t gain = 0;
   double protrusion = 0;
   std::uint32_t candidate = 0;
 
-  /// Whether `other` is better.
+  /// Whether `b` is better than `a`.
   friend bool operator<(const Offer& a, const Offer& b) {
     if (a.gain != b.gain) return a.gain < b.gain;
     if (a.protrusion != b.protrusion) return a.protrusion > b.protrusion;
@@ -61,7 +61,7 @@ void removeRedundant(const CandidatePool& pool, std::size_t rows, Selection& sel
     for (const std::uint32_t row : pool.cover.column(chosen)) ++times[row];
   }
   while (true) {
-    // The candidate whose rows are covered most often, counting the rows covered only twice.
+    // Find the redundant candidate with the fewest rows that only one other candidate covers.
     std::size_t best = selection.size();
     std::size_t fewest = rows + 1;
     for (std::size_t at = 0; at < selection.size(); ++at) {

@@ -15,30 +15,33 @@ namespace galactic::bake::sphere_set {
 namespace {
 
 constexpr std::uint64_t kSeed = 23;
-/// Directions in which a sphere's protrusion is looked up.
+/// Number of directions in which a sphere's protrusion is sampled.
 constexpr std::size_t kDirections = 48;
-/// About so many candidates of each radius are looked through.
+/// Approximate number of candidates per radius.
 constexpr double kMostCandidates = 1500;
-/// A sphere whose center is further outside than this share of its radius mostly sticks out.
+/// Farthest that a center may be outside, as a share of the radius; beyond that, most of the sphere
+/// protrudes.
 constexpr double kFurthestOutside = 0.25;
-/// Centers are pulled this much deeper than they need be, meters: rounding must not lift them.
+/// Centers are pulled deeper than necessary by this much, meters, so that rounding does not lift
+/// them above the limit.
 constexpr double kBelowHighest = 1e-6;
-/// A sphere may protrude more where gaps are wide: by this power of what the widest is above eps.
+/// While gaps are wide, a sphere may protrude by tau times this power of widest gap / eps.
 constexpr double kProtrusionGrowth = 0.4;
-/// More than rounding takes from what a sphere reaches, meters.
+/// More than rounding takes from a sphere's reach, meters.
 constexpr double kReachRounding = 1e-5;
 constexpr std::size_t kChunk = 256;
 constexpr std::size_t kMostExchanges = 12;
-/// One candidate of so many is looked at again after an exchange.
+/// One of this many candidates is evaluated again after an exchange.
 constexpr std::size_t kPromisingShare = 4;
-/// An exchange that makes the error less by a smaller share is not worth a pass.
+/// An exchange that reduces the error by a smaller share is not worth a pass.
 constexpr double kWorthwhile = 1e-3;
-/// What it may cost, as a share of the error, to exchange a sphere that protrudes too much by now.
+/// The cost, as a share of the error, that is acceptable for exchanging a sphere that protrudes
+/// more than is now allowed.
 constexpr double kWorthOfLimit = 0.5;
 constexpr int kSweeps = 12;
-/// Tries to move a sphere in each sweep.
+/// Attempts to move a sphere in each sweep.
 constexpr int kTries = 8;
-/// The last step of a search's moves, as a share of the first one.
+/// The last step of settling as a share of the first one.
 constexpr double kLastStep = 0.08;
 
 std::array<Vec3d, kDirections> evenDirections() {
@@ -52,7 +55,7 @@ Sphere narrowed(const Vec3d& center, double radius) {
   return {c.x, c.y, c.z, static_cast<float>(radius)};
 }
 
-/// The points along a Morton curve.
+/// The points in the order of a Morton curve.
 std::vector<Vec3d> neighborsTogether(std::span<const Vec3d> points) {
   Box box;
   for (const Vec3d& p : points) box.grow(p);
@@ -116,7 +119,7 @@ double ExchangeSearch::error() const {
 }
 
 double ExchangeSearch::protrusionCost(const Vec3d& center, std::uint32_t radius_index) const {
-  // In the unit of the points' sum, each of which stands for its share of the area.
+  // In the unit of the sum over points, in which each point stands for its share of the area.
   const double per_area = static_cast<double>(points_.size()) / task_.solid->area();
   return weights_.protrusion * per_area *
          protrusionIntegral(grid_, center, task_.radii[radius_index]);
@@ -139,7 +142,7 @@ std::vector<std::uint32_t> ExchangeSearch::everyCandidate() const {
 std::vector<Candidate> ExchangeSearch::candidatesOf(std::uint32_t radius_index) const {
   const double radius = task_.radii[radius_index];
   const double highest = std::min(kLooserTau * task_.tau - radius, kFurthestOutside * radius);
-  // Deeper, a sphere does not reach the surface, and a larger one does better.
+  // A deeper sphere would not reach the surface, and a larger one is better there.
   const bool is_largest = radius_index + 1 == task_.radii.size();
   const double lowest = is_largest ? -HUGE_VAL : -radius;
   std::vector<std::size_t> nodes;
@@ -179,7 +182,7 @@ std::optional<Candidate> ExchangeSearch::pulledInwards(const Vec3d& from,
 }
 
 ExchangeSearch::Place ExchangeSearch::placeOf(const Vec3d& point) const {
-  // Without spheres a point costs as much as with one at the other end.
+  // Without spheres, a point costs as much as with a sphere at the other end of the solid.
   const double furthest = norm(task_.solid->bounds().size());
   Place place{0, furthest, furthest};
   for (std::uint32_t rank = 0; rank < chosen_.size(); ++rank) {
@@ -341,9 +344,9 @@ std::vector<std::uint32_t> ExchangeSearch::promising(std::vector<Offers> offers)
 void ExchangeSearch::exchange() {
   std::vector<Offers> offers = offersOf(everyCandidate());
   next_added_ = best(offers).added.candidate;
-  // One sphere stands where it does best already.
+  // A single sphere is already at its best position.
   if (chosen_.size() < 2) return;
-  // What one exchange makes good was not among the worst before.
+  // A candidate that an exchange makes good was not among the worst before it.
   std::vector<std::uint32_t> candidates;
   for (std::size_t n = 0; n < kMostExchanges; ++n) {
     const Offer exchanged = best(offers).exchanged;
@@ -358,7 +361,7 @@ void ExchangeSearch::exchange() {
 
 bool ExchangeSearch::grow() {
   if (candidates_.empty()) return false;
-  // Small moves since the last pass hardly change which candidate is best.
+  // Small moves since the last pass hardly affect which candidate is best.
   if (chosen_.empty() || !(offersOf(next_added_).added.gain > 0)) {
     const Offer added = best(offersOf(everyCandidate())).added;
     if (!(added.gain > 0)) return false;

@@ -12,7 +12,7 @@ inline bool isOutOfReach(const PointBlock& block, const Sphere& sphere) {
   return dx * dx + dy * dy + dz * dz > reach * reach;
 }
 
-/// A loop that compilers vectorize for whatever the including file is compiled for.
+/// A loop that compilers vectorize for the instruction set of the including file.
 inline GapGain gainOf(const CostedPoints& points, const GapCost& cost, const Sphere& sphere) {
   float staying[kGainLanes] = {};
   float gone[kGainLanes] = {};

@@ -23,26 +23,29 @@ using sphere_set::Yardstick;
 
 namespace {
 
-/// A gap of eps costs its square, and this much more; one of some eps costs twice its square.
+/// A gap costs its square, plus a linear term that is kLinear times the square at a gap of eps,
+/// plus a fourth power that equals the square at a gap of kWideGap times eps.
 constexpr double kLinear = 2;
 constexpr double kWideGap = 1.75;
-/// What a protrusion costs beside a gap, and what is left of that when it keeps wide gaps open.
+/// Weight of protrusions relative to gaps, the factor by which it falls when it keeps wide gaps
+/// open, and its lower limit.
 constexpr double kProtrusionWeight = 1.5;
 constexpr double kCheaper = 0.5;
 constexpr double kCheapest = 0.05;
-/// Points of the surface that the search sees: this far apart, meters, but no more nor fewer.
+/// The surface points that the search uses: fewest, most, and the desired spacing, meters.
 constexpr double kFewestPoints = 400;
 constexpr double kMostPoints = 1500;
 constexpr double kPointSpacing = 0.025;
-/// What a set is settled on in the end, and promises are made on.
+/// The points and sweeps with which a set is finally settled; the guarantees are based on these
+/// points.
 constexpr double kFinalPoints = 3000;
 constexpr int kFinalSweeps = 28;
-/// Poisson discs leave room: so many of a spacing's squares of an area become points.
+/// Poisson disks leave room: number of points per square of the spacing.
 constexpr double kPacking = 0.7;
 constexpr std::uint64_t kPointSeed = 1;
 constexpr std::uint64_t kFinalSeed = 2;
 constexpr double kGridNodes = 15'000;
-/// For one of many covers.
+/// The effort for one of many covers.
 constexpr sphere_set::Effort kCurveEffort{400'000, 200'000, 8'000'000, 2, 12};
 constexpr double kCurvePlaces = 15'000;
 
@@ -50,7 +53,7 @@ double spacingFor(const FitTask& task, double points) {
   return std::sqrt(kPacking * task.solid->area() / points);
 }
 
-/// Of the points that the search sees.
+/// Spacing of the points that the search uses.
 double searchSpacing(const FitTask& task) {
   const double wanted = task.solid->area() / (kPointSpacing * kPointSpacing);
   return spacingFor(task, std::clamp(wanted, kFewestPoints, kMostPoints));
@@ -67,7 +70,7 @@ ErrorWeights weightsFor(double eps) {
 
 }  // namespace
 
-/// The solver's state between two sets of a curve.
+/// The solver's state between the sets of a curve.
 class SphereCurve::Fitter {
  public:
   Fitter(PreparedFit prepared, std::uint32_t most)
@@ -124,14 +127,15 @@ class SphereCurve::Fitter {
   }
 
  private:
-  /// Where a sphere would close wide gaps at too high a price, protrusions cost less from there on.
+  /// Adds a sphere. If its protrusion would cost too much to close wide gaps, protrusions cost less
+  /// from there on.
   bool grow() {
     for (double weight = 1; weight > kCheapest; weight *= kCheaper) {
       const double before = search_->error();
       if (search_->grow()) {
         const double error =
             steps_.empty() ? search_->error() : steps_.back().error - before + search_->error();
-        // Between the points a gap can only be wider by their spacing.
+        // Between the points, a gap can be wider by at most their spacing.
         add(search_->spheres(), {.error = error,
                                  .widest_gap = search_->widestGap() + spacing_,
                                  .unseen_gap = spacing_});
@@ -148,7 +152,7 @@ class SphereCurve::Fitter {
     sets_.push_back(std::move(spheres));
   }
 
-  /// Moved a little, by points that are denser than those of the search, and what can be promised.
+  /// The spheres, settled on denser points than those of the search, and what can be guaranteed.
   [[nodiscard]] Cover settled(const std::vector<Candidate>& spheres) const {
     const FitTask& task = prepared_.task;
     const double spacing = spacingFor(task, kFinalPoints);
@@ -158,7 +162,7 @@ class SphereCurve::Fitter {
     search.settle(kFinalSweeps);
     Cover cover;
     cover.spheres = search.spheres();
-    // Between the points a gap can only be larger by their spacing.
+    // Between the points, a gap can be larger by at most their spacing.
     cover.slack = spacing;
     cover.guaranteed_gap =
         sphere_set::largestOf(sphere_set::gapsOf(task, cover.spheres, dense)) + spacing;
@@ -178,9 +182,9 @@ class SphereCurve::Fitter {
   std::optional<DistanceGrid> grid_;
   std::optional<ExchangeSearch> search_;
   std::vector<CurvePoint> steps_;
-  /// What each step was made of.
+  /// The spheres of each step.
   std::vector<std::vector<Candidate>> sets_;
-  /// The only set where finish() made it.
+  /// The only set, if finish() made it.
   std::optional<Cover> cover_;
   bool complete_ = false;
 };

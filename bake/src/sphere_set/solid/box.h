@@ -14,20 +14,20 @@ namespace galactic::bake::sphere_set {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-/// `value` rounded to the 24 significant bits of a float (Veltkamp's splitting). Not by a
-/// conversion to float and back: GCC 12 drops that where it vectorises it, and builds would differ.
+/// `value` rounded to the 24 significant bits of a float (Veltkamp's splitting). Does not convert
+/// to float and back, because GCC 12 drops that when it vectorizes, and builds would differ.
 [[nodiscard]] inline double roundedToFloat(double value) {
   constexpr double kSplitter = 0x1p29 + 1;
   const double scaled = value * kSplitter;
   return scaled - (scaled - value);
 }
 
-/// The nearest point that a pack can store. Whatever is checked is checked there.
+/// The nearest point that a pack can store. All checks are made for that point.
 [[nodiscard]] inline Vec3d asStored(const Vec3d& v) {
   return {roundedToFloat(v.x), roundedToFloat(v.y), roundedToFloat(v.z)};
 }
 
-/// A box that holds nothing until it is grown.
+/// A box that is empty until it is grown.
 struct Box {
   Vec3d min{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3d max{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -36,7 +36,7 @@ struct Box {
     min = least(min, p);
     max = greatest(max, p);
   }
-  /// The box with `margin` more on every side.
+  /// The box extended by `margin` on every side.
   [[nodiscard]] Box widened(double margin) const {
     const Vec3d m{margin, margin, margin};
     return {min - m, max + m};

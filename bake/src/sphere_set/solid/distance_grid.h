@@ -7,11 +7,11 @@
 
 namespace galactic::bake::sphere_set {
 
-/// Signed distances to a solid at the nodes of a regular grid around it: where an estimate will do
-/// in place of a search. Immutable.
+/// Signed distances to a solid at the nodes of a regular grid around it, for cases in which an
+/// estimate can replace a search. Immutable.
 class DistanceGrid {
  public:
-  /// Over the solid's bounds and `margin` meters around them, about `most_nodes` nodes.
+  /// Covers the solid's bounds and a margin of `margin` meters with about `most_nodes` nodes.
   DistanceGrid(const ExteriorSolid& solid, double margin, double most_nodes, unsigned threads);
 
   [[nodiscard]] double step() const { return step_; }
@@ -21,7 +21,8 @@ class DistanceGrid {
     return static_cast<double>(distance_[node]);
   }
 
-  /// Interpolated between the nodes around `p`; of the nearest place where `p` is beyond the grid.
+  /// The distance at `p`, interpolated between nodes. Outside the grid, that of the nearest point
+  /// in it.
   [[nodiscard]] double at(const Vec3d& p) const;
 
  private:

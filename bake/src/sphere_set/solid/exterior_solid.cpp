@@ -5,9 +5,9 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// At most this many rows of points are tried on a facet.
+/// Maximum number of rows of points tried on a facet.
 constexpr double kMostRows = 40;
-/// Cutting stops at this many facets; the rest stays whole.
+/// Cutting stops at this many facets; the rest remain whole.
 constexpr std::size_t kMostFacets = 2'000'000;
 
 enum class Touch { kNowhere, kPartly, kEverywhere };
@@ -27,7 +27,7 @@ Box boundsOf(std::span<const Facet> facets) {
   return box;
 }
 
-/// Which corner the longest edge of a facet starts at, and its length.
+/// The corner at which the longest edge of a facet starts, and the length of that edge.
 std::pair<std::size_t, double> longestEdge(const Facet& facet) {
   std::size_t start = 0;
   double longest = 0;
@@ -41,7 +41,7 @@ std::pair<std::size_t, double> longestEdge(const Facet& facet) {
   return {start, longest};
 }
 
-/// Tries points of the facet, no further apart than two voxels where it is not huge.
+/// Tries points of the facet that are at most two voxels apart, unless the facet is huge.
 Touch touchOf(const ProbeField& field, const Facet& facet, double longest) {
   const Vec3d a = widen(facet[0]);
   const Vec3d ab = widen(facet[1]) - a;
@@ -117,12 +117,12 @@ SurfaceDistance ExteriorSolid::distance(const Vec3d& p, std::uint32_t hint) cons
   const NearestPoint found = surface_.nearest(p, limits);
   const double distance = std::sqrt(found.squared);
   const SurfaceDistance outside{distance, found.point, found.facet};
-  // The empty balls are known at voxels only, so right outside a face they leave points free that
-  // are up to about this far from it. Such points count as outside, wherever they are: no sphere
-  // may protrude more than is said.
+  // The empty balls are only known at voxels, so they do not cover points just outside a face, up
+  // to about this distance. Such points count as outside, wherever they are, so that no sphere
+  // protrudes more than reported.
   const double voxel = field_->voxel();
   if (distance < voxel * voxel / (4 * field_->probe())) return outside;
-  // A point inside is at least as far from every empty ball as from the surface.
+  // A point inside the solid is at least as far from every empty ball as from the surface.
   const bool inside = field_->excess(p) >= std::min(distance, voxel / 4) * (1 - 1e-6);
   return inside ? SurfaceDistance{-distance, found.point, found.facet} : outside;
 }

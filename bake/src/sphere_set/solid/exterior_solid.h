@@ -8,7 +8,7 @@
 
 namespace galactic::bake::sphere_set {
 
-/// Signed distance to the reachable surface, and the point of the surface that is nearest.
+/// Signed distance to the reachable surface, and the nearest point on it.
 struct SurfaceDistance {
   /// Negative inside the solid, meters.
   double distance = 0;
@@ -17,32 +17,32 @@ struct SurfaceDistance {
   std::uint32_t facet = kNoFacet;
 };
 
-/// What a probe cannot reach from outside, and the surface that it touches: holes smaller than the
-/// probe are closed, inner faces and nested shells vanish. Immutable, so safe to share between
-/// threads.
+/// The solid that a probe cannot enter from outside, and the surface that the probe touches. Holes
+/// smaller than the probe are closed; inner faces and nested shells vanish. Immutable, so threads
+/// may share it.
 class ExteriorSolid {
  public:
-  /// See ProbeField for the probe that `smallest_radius` gives. Never changes with `threads`.
+  /// ProbeField describes the probe for `smallest_radius`. The result does not depend on `threads`.
   ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, unsigned threads);
 
-  /// The facets that the probe touches; large ones that it touches only in part are cut up.
+  /// The facets that the probe touches. Large facets that it touches only in part are cut up.
   [[nodiscard]] std::span<const Facet> facets() const { return surface_.facets(); }
-  /// Of the facets.
+  /// Bounds of the facets.
   [[nodiscard]] const Box& bounds() const { return bounds_; }
-  /// Of the facets, square meters.
+  /// Area of the facets, square meters.
   [[nodiscard]] double area() const { return area_; }
 
-  /// Up to a quarter of a voxel at the surface.
+  /// Whether `p` is inside; accurate to a quarter of a voxel at the surface.
   [[nodiscard]] bool contains(const Vec3d& p) const { return field_->excess(p) >= 0; }
 
-  /// Whether the probe touches the surface at `p`, up to half a voxel.
+  /// Whether the probe touches the surface at `p`, to within half a voxel.
   [[nodiscard]] bool reachable(const Vec3d& p) const {
     return field_->excess(p) <= field_->voxel() / 2;
   }
 
-  /// The distance is that to the facets; its sign is never wrongly negative outside a closed
-  /// surface, and wrongly positive only within a small part of a voxel of it.
-  /// A facet that is likely near, `hint`, makes it faster.
+  /// The distance to the facets. Its sign is never wrongly negative outside a closed surface, and
+  /// wrongly positive only within a small fraction of a voxel of it. A `hint`, a facet that is
+  /// likely to be near, speeds up the search.
   [[nodiscard]] SurfaceDistance distance(const Vec3d& p, std::uint32_t hint = kNoFacet) const;
 
  private:
@@ -54,7 +54,7 @@ class ExteriorSolid {
   double area_ = 0;
 };
 
-/// Twice the area is the length of this normal.
+/// The normal of a facet; its length is twice the area.
 [[nodiscard]] Vec3d facetNormal(const Facet& facet);
 
 }  // namespace galactic::bake::sphere_set

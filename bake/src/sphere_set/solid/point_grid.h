@@ -12,11 +12,11 @@ namespace galactic::bake::sphere_set {
 /// Points sorted into the cells of a regular grid, for range queries. Immutable.
 class PointGrid {
  public:
-  /// The cells' edge is `cell` meters, or more where there would be too many.
+  /// `cell`: edge of the cells, meters; larger if there would be too many cells.
   PointGrid(std::span<const Vec3d> points, double cell);
 
-  /// Calls visit(index, squared distance) for the points within `radius` of `center`, always in
-  /// the same order, until it returns false.
+  /// Calls visit(index, squared distance) for the points within `radius` of `center`, in a fixed
+  /// order, until it returns false.
   template <class Visit>
   void visitWithin(const Vec3d& center, double radius, const Visit& visit) const {
     if (sorted_.empty()) return;
@@ -63,7 +63,7 @@ class PointGrid {
   double cell_ = 0;
   std::array<double, 3> origin_{};
   std::array<std::size_t, 3> size_{1, 1, 1};
-  /// Prefix sums into sorted_, one more than cells.
+  /// First entry of each cell in sorted_, with one more element than cells.
   std::vector<std::uint32_t> first_;
   std::vector<Entry> sorted_;
 };

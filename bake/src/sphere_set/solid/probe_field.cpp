@@ -7,17 +7,20 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// More would cost memory and time out of proportion; the probe grows instead.
+/// More voxels would take too much memory and time; the probe grows instead.
 constexpr double kMostVoxels = 6e6;
-/// The grid is as fine as the object's size asks for, between these shares of the smallest radius.
+/// The grid has kVoxelsAlong voxels along the object, but their edge is between these shares of the
+/// smallest radius.
 constexpr double kVoxelsAlong = 110;
 constexpr double kFinestVoxel = 0.16;
 constexpr double kCoarsestVoxel = 0.35;
-/// A probe smaller than this many voxels would slip through the grid.
+/// Least radius of the probe in voxels. A smaller one could slip through surfaces between the
+/// corners of the grid.
 constexpr double kVoxelsPerProbe = 1.0 / 0.7;
-/// Distances are exact up to the probe's radius and this many voxels.
+/// Distances are exact up to the probe's radius plus this many voxels.
 constexpr double kExactVoxels = 1.5;
-/// A search from a free voxel looks this many voxels further, to skip what is free as well.
+/// A search at a free voxel looks this many voxels farther, so that neighbors that are also free
+/// need no search.
 constexpr double kSkipVoxels = 7;
 
 constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
@@ -30,7 +33,7 @@ class Envelope {
 
   void clear() { count_ = 0; }
 
-  /// Adds the parabola with its lowest point `height` at `at`; in rising order of `at`.
+  /// Adds the parabola with its minimum `height` at `at`. Call it in ascending order of `at`.
   void add(std::int64_t at, std::int64_t height) {
     while (count_ > 0) {
       const std::int64_t start = crossing(count_ - 1, at, height);
@@ -45,14 +48,15 @@ class Envelope {
 
   [[nodiscard]] bool empty() const { return count_ == 0; }
 
-  /// The place of the lowest parabola at `at`; in rising order of `at`, from `hint` = 0.
+  /// The position of the minimum of the parabola that is lowest at `at`. Call it in ascending order
+  /// of `at`, starting with `hint` = 0.
   [[nodiscard]] std::int64_t lowest(std::int64_t at, std::size_t& hint) const {
     while (hint + 1 < count_ && from_[hint + 1] <= at) ++hint;
     return at_[hint];
   }
 
  private:
-  /// The first whole place at which the new parabola is below the one at `rank`.
+  /// The first integer position at which the new parabola is below the one at `rank`.
   [[nodiscard]] std::int64_t crossing(std::size_t rank, std::int64_t at,
                                       std::int64_t height) const {
     const std::int64_t numerator = (height + at * at) - (height_[rank] + at_[rank] * at_[rank]);
@@ -115,7 +119,7 @@ Vec3d ProbeField::positionOf(std::size_t index) const {
 }
 
 void ProbeField::spread(const TriangleTree& tree) {
-  /// A voxel to go on from, what is known of its distance, and a facet near it.
+  /// A voxel to continue from, a facet near it, and a lower bound of its distance.
   struct Step {
     std::uint32_t at = 0;
     std::uint32_t facet = kNoFacet;
@@ -129,8 +133,8 @@ void ProbeField::spread(const TriangleTree& tree) {
   const auto visit = [&](std::size_t at, const Step& from) {
     if (clearance_[at] != kUnknown) return;
     Step step{static_cast<std::uint32_t>(at), from.facet, from.at_least - voxel_};
-    // The distance changes by no more than the way gone: far from the mesh few searches are due,
-    // and which ones does not change the outcome.
+    // The distance changes by at most the distance moved, so few searches are necessary far from
+    // the mesh. Which ones are made does not affect the result.
     if (step.at_least < exact) {
       const SearchLimits limits{far * far, probe_ * probe_ * (1 - 1e-9), from.facet};
       const NearestPoint found = tree.nearest(positionOf(at), limits);
@@ -165,7 +169,7 @@ void ProbeField::findNearestReached(unsigned threads) {
 }
 
 void ProbeField::nearestInRow(std::size_t y, std::size_t z) {
-  // The nearer of the last reached voxel and the next one.
+  // The nearer of the previous and the next reached voxel.
   std::uint32_t* row = &nearest_[index(0, y, z)];
   const auto first = static_cast<std::uint32_t>(index(0, y, z));
   std::uint32_t last = kUnreached;

@@ -9,16 +9,16 @@
 
 namespace galactic::bake::sphere_set {
 
-/// Where a ball, the probe, can go around a mesh when it comes from outside.
+/// Where a ball, the probe, can go around a mesh if it comes from outside.
 ///
-/// The ball is tried at the corners of a voxel grid and spreads from the grid's border. Every place
-/// that it reaches is the center of an empty ball, whose radius is the distance to the mesh. What
-/// no empty ball holds is the solid. Nothing depends on closed surfaces or on the winding of
-/// triangles.
+/// The ball is tried at the corners of a voxel grid and spreads from the grid's border. Every point
+/// that it reaches is the center of an empty ball, whose radius is the distance to the mesh. The
+/// solid is what no empty ball contains. Surfaces need not be closed, and the winding of triangles
+/// does not matter.
 class ProbeField {
  public:
-  /// For all facets of `tree`, which lie in `bounds`. The probe's radius is half of
-  /// `smallest_radius`, or more where the grid would have too many voxels otherwise.
+  /// For the facets of `tree`, all of which lie in `bounds`. The probe's radius is half of
+  /// `smallest_radius`, or more if the grid would have too many voxels.
   ProbeField(const TriangleTree& tree, const Box& bounds, double smallest_radius, unsigned threads);
 
   /// Edge of a voxel, meters.
@@ -26,7 +26,8 @@ class ProbeField {
   /// Radius of the probe, meters.
   [[nodiscard]] double probe() const { return probe_; }
 
-  /// Distance of `p` to the empty balls near it: negative inside one, so outside the solid.
+  /// Distance of `p` to the empty balls near it: negative inside a ball, that is, outside the
+  /// solid.
   [[nodiscard]] double excess(const Vec3d& p) const;
 
  private:
@@ -52,10 +53,10 @@ class ProbeField {
   double probe_ = 0;
   Vec3d origin_;
   std::array<std::size_t, 3> size_{};
-  /// Radius of the empty ball at each voxel that the probe reaches, up to a limit; kBlocked where
-  /// it does not fit, kUnknown where it did not come near.
+  /// Radius of the empty ball at each voxel that the probe reaches, up to a limit; kBlocked if the
+  /// probe does not fit, kUnknown if it did not come near.
   std::vector<float> clearance_;
-  /// Index of the reached voxel nearest to each voxel.
+  /// For each voxel, the index of the nearest reached voxel.
   std::vector<std::uint32_t> nearest_;
 };
 

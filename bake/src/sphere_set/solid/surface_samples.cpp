@@ -9,16 +9,16 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
-/// Every facet set gets at least this many tries.
+/// Tries added for every surface, so that small ones get enough.
 constexpr double kLeastTries = 50;
 
-/// Points in a hash table of cubes: how big the object is does not matter.
+/// Points in a hash table of cubes, so that the size of the object does not matter.
 class SparseGrid {
  public:
   SparseGrid(double edge, std::size_t expected)
       : edge_(edge), heads_(std::bit_ceil(2 * expected + 16), kNone) {}
 
-  /// Whether some point is nearer to `p` than the edge of a cube.
+  /// Whether any point is nearer to `p` than the edge length of a cube.
   [[nodiscard]] bool hasNear(const Vec3d& p, const std::vector<Vec3d>& points) const {
     const Cube at = cubeOf(p);
     // Most points have a neighbor in their own cube.
@@ -26,7 +26,7 @@ class SparseGrid {
     const AxisDistances x = squaredDistances(at[0], p.x);
     const AxisDistances y = squaredDistances(at[1], p.y);
     const AxisDistances z = squaredDistances(at[2], p.z);
-    // A little more, so that rounding leaves no cube out.
+    // Slightly more, so that rounding leaves no cube out.
     const double reach = edge_ * edge_ * (1 + 1e-9);
     for (std::size_t k = 0; k < 3; ++k) {
       if (z[k] >= reach) continue;
@@ -43,7 +43,7 @@ class SparseGrid {
     return false;
   }
 
-  /// Adds the point that was appended to the list last.
+  /// Adds the point that was last appended to the list.
   void add(const Vec3d& p) {
     std::uint32_t& head = heads_[slotOf(cubeOf(p))];
     next_.push_back(head);
@@ -59,7 +59,7 @@ class SparseGrid {
     return {along(p.x), along(p.y), along(p.z)};
   }
 
-  /// Other cubes of the same slot only cost a comparison.
+  /// Whether a point of `cube` is near `p`. Other cubes with the same slot only cost a comparison.
   [[nodiscard]] bool holdsNear(const Cube& cube, const Vec3d& p,
                                const std::vector<Vec3d>& points) const {
     for (std::uint32_t i = heads_[slotOf(cube)]; i != kNone; i = next_[i]) {
@@ -68,7 +68,7 @@ class SparseGrid {
     return false;
   }
 
-  /// To the cube before, the same, and the next one along an axis.
+  /// Squared distances to the previous cube, the same cube and the next one along an axis.
   using AxisDistances = std::array<double, 3>;
 
   [[nodiscard]] AxisDistances squaredDistances(std::int64_t at, double x) const {
