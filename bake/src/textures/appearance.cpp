@@ -11,15 +11,15 @@
 namespace galactic::bake {
 namespace {
 
-/// From this alpha on, a blended surface is drawn.
+/// A blended surface is drawn if its alpha is at least this.
 constexpr float kBlendCutoff = 0.5F;
-/// Bytes of alpha that look like none and like all.
+/// Limits beyond which alpha is stored as 0 or as 255.
 constexpr float kNoAlpha = 0.5F / 255;
 constexpr float kFullAlpha = 254.5F / 255;
 
 bool isTranslucent(float alpha) { return alpha > kNoAlpha && alpha < kFullAlpha; }
 
-/// NaN is 1, as for a factor that is not there.
+/// Clamps to 0 to 1. NaN becomes 1, like a missing factor.
 float unitInterval(float value) { return std::isnan(value) ? 1.F : std::clamp(value, 0.F, 1.F); }
 
 float cutoffOf(const Look& look) {
@@ -27,7 +27,7 @@ float cutoffOf(const Look& look) {
   return look.alpha_mode == AlphaMode::kMask ? look.alpha_cutoff : kBlendCutoff;
 }
 
-/// How much of an image is there.
+/// How much of an image is visible.
 struct Visibility {
   float cutoff = 0;
   double coverage = 1;
@@ -56,7 +56,7 @@ Visibility visibilityOf(const Image& image, const Look& look) {
   return found;
 }
 
-/// Whether all texels are equal, in what counts of them.
+/// Whether all texels are equal, in the channels that matter.
 bool isUniform(const Image& image, AlphaUse alpha) {
   const std::size_t channels = alpha == AlphaUse::kIgnored ? 3 : 4;
   for (std::size_t i = 4; i < image.rgba.size(); i += 4) {

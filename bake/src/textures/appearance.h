@@ -11,12 +11,12 @@
 
 namespace galactic::bake {
 
-/// All of a material that its look depends on, besides the image.
+/// All properties of a material that affect its look, except the image.
 struct Look {
   /// Linear RGBA.
   std::array<float, 4> factor{1, 1, 1, 1};
   AlphaMode alpha_mode = AlphaMode::kOpaque;
-  /// 0 to 1; of kMask.
+  /// Only for kMask; 0 to 1.
   float alpha_cutoff = 0.5F;
 
   [[nodiscard]] bool operator<(const Look& other) const {
@@ -25,27 +25,27 @@ struct Look {
   }
 };
 
-/// The look of `material`, alike for materials that differ only in what does not show.
+/// The look of `material`. It is the same for materials that differ only in invisible properties.
 [[nodiscard]] Look lookOf(const SourceMaterial& material);
 
-/// How a material with a certain image or without one is stored.
+/// The stored form of a material, with an image or without.
 struct Appearance {
   /// RGBA, sRGB, R lowest.
   std::uint32_t color = 0xFFFFFFFF;
   /// 0: opaque.
   float alpha_cutoff = 0;
-  /// 0: no texture, `color` says it all.
+  /// Edge in texels; 0: no texture, only `color`.
   std::uint32_t size = 0;
   TexelFormat format = TexelFormat::kRgba8;
   std::vector<std::uint8_t> texels;
-  /// Share of the surface that ought to be translucent, 0 to 1.
+  /// Share of the surface that should be translucent, 0 to 1.
   double translucent = 0;
 };
 
-/// Without an image.
+/// The appearance without an image.
 [[nodiscard]] Appearance plainAppearance(const Look& look);
 
-/// With one. `options` are in range.
+/// The appearance with an image. `options` must be in range.
 [[nodiscard]] Appearance texturedAppearance(const Image& image, const Look& look,
                                             const TextureBakeOptions& options,
                                             const TransferFunction& transfer);

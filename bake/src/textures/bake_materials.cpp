@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t kLargestTexture = 4096;
 constexpr std::size_t kTextureAlignment = 32;
-/// A pack's limit, less than what its vertices and the rest could take.
+/// Limit for the texels in a pack.
 constexpr std::uint64_t kMostTexelBytes = std::uint64_t{2} << 30U;
 
 Result<void> checkOptions(const TextureBakeOptions& options) {
@@ -31,15 +31,15 @@ Result<void> checkOptions(const TextureBakeOptions& options) {
                           options.largest, kLargestTexture));
 }
 
-/// What becomes of one image: one appearance for each look that materials have with it.
+/// The result for one image: one appearance for each look of the materials that use it.
 struct SourceResult {
   std::map<Look, Appearance> appearances;
   std::uint64_t image_bytes = 0;
-  /// End of a sentence that begins "the image"; empty when it could be used.
+  /// End of a sentence that begins with "the image"; empty if the image could be used.
   std::string fault;
 };
 
-/// Whether it is done; not where another thread bakes the image and is not waited for.
+/// Bakes an image. Returns false if another thread is baking it and `when_busy` is kSkip.
 bool bakeSource(const TextureSource& source, const ImageBaker& baker, WhenBusy when_busy,
                 SourceResult& result) {
   result.fault = source.fault;
@@ -61,8 +61,8 @@ bool bakeSource(const TextureSource& source, const ImageBaker& baker, WhenBusy w
   return true;
 }
 
-/// Bakes all images. Those that other threads are at come last: scenes that are baked side by side
-/// show the same images in the same order.
+/// Bakes all images. Those that other threads are baking come last, because scenes that are baked
+/// at the same time show the same images in the same order.
 void bakeSources(std::span<const TextureSource> sources, const ImageBaker& baker, unsigned threads,
                  std::span<SourceResult> results) {
   std::vector<char> done(sources.size());
@@ -74,7 +74,7 @@ void bakeSources(std::span<const TextureSource> sources, const ImageBaker& baker
   }
 }
 
-/// Puts appearances together, each texture once.
+/// Collects appearances and stores each texture once.
 class Collector {
  public:
   explicit Collector(BakedMaterials& baked) : baked_(baked) {}

@@ -20,14 +20,14 @@ void transferFields(Archive& archive, Is<Appearance> auto& appearance) {
 
 namespace {
 
-/// The largest allowed image takes seconds, and a few times its own size.
+/// The largest allowed image takes a few seconds, and a few times its own size in memory.
 constexpr ProcessLimits kBakeLimits{.wall_clock = std::chrono::seconds(120),
                                     .memory = std::uint64_t{3} << 30U};
 
 std::string failureText(const ProcessFailure& failure) {
   switch (failure.end) {
     case ProcessEnd::kNotStarted:
-      // The machine's fault is no reason to bake without the image.
+      // A fault of the machine is no reason to bake without the image.
       throw ErrorException({ErrorCode::kUnsupported, "an image of a texture",
                             fmt::format("no process can be started to decode it: {}",
                                         std::generic_category().message(failure.number))});

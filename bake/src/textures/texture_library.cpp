@@ -13,7 +13,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Everything that decides what an image becomes.
+/// Everything that determines the result of baking an image.
 struct ImageKey {
   std::uint64_t hash_low = 0;
   std::uint64_t hash_high = 0;
@@ -27,7 +27,8 @@ struct ImageKey {
   }
 };
 
-/// Beyond this, images are baked each time: a dataset's shared ones take less.
+/// Beyond this limit, images are not kept and are baked each time. The shared images of a dataset
+/// take less.
 constexpr std::size_t kMostTexelBytes = std::size_t{1} << 30U;
 
 std::size_t texelBytes(const BakedImage& baked) {
@@ -42,24 +43,24 @@ std::size_t texelBytes(const BakedImage& baked) {
 struct TextureLibrary::State {
   std::mutex mutex;
   std::condition_variable was_released;
-  /// None while a thread bakes it.
+  /// The image is none while a thread is baking it.
   std::map<ImageKey, std::optional<BakedImage>> images;
   std::size_t texel_bytes = 0;
 
-  /// Whether the caller is to bake the image, and then release it. Else `known` is the image; none
-  /// where it is busy and not waited for.
+  /// Returns true if the caller must bake the image and then release it. Otherwise sets `known` to
+  /// the image, or to none if another thread is baking it and `when_busy` is kSkip.
   bool claim(const ImageKey& key, WhenBusy when_busy, std::optional<BakedImage>& known) {
     std::unique_lock lock(mutex);
     while (!images.try_emplace(key).second) {
       known = images.at(key);
       if (known || when_busy == WhenBusy::kSkip) return false;
-      // It may not be kept, or never be made: then it is this thread's turn.
+      // Afterwards, the image may not have been kept or made; then it is this thread's turn.
       was_released.wait(lock);
     }
     return true;
   }
 
-  /// Ends a claim; without an image, the next thread that wants it bakes it.
+  /// Ends a claim. If `baked` is null, the next thread that wants the image bakes it.
   void release(const ImageKey& key, const BakedImage* baked) {
     const std::lock_guard lock(mutex);
     if (baked != nullptr && texel_bytes + texelBytes(*baked) <= kMostTexelBytes) {

@@ -12,18 +12,18 @@ namespace galactic::bake {
 
 using BakedImage = tl::expected<ImageAppearances, std::string>;
 
-/// What to do about an image that another thread is baking.
+/// What to do with an image that another thread is baking.
 enum class WhenBusy { kSkip, kWait };
 
 /// Bakes the images of one asset. Thread-safe.
 class ImageBaker {
  public:
-  /// `library`: null where no image is known from other assets. It and `options` outlive this.
+  /// `library`: images shared with other assets, or null. It and `options` must outlive this.
   ImageBaker(const TextureBakeOptions& options, TextureLibrary* library)
       : options_(options), library_(library) {}
 
-  /// bakeIsolated, but once for all who have the same library. None where another thread is baking
-  /// the image and `when_busy` is kSkip.
+  /// Like bakeIsolated, but only once for all bakers that share the library. None if another thread
+  /// is baking the image and `when_busy` is kSkip.
   [[nodiscard]] std::optional<BakedImage> bake(std::span<const std::byte> file,
                                                std::span<const Look> looks,
                                                WhenBusy when_busy) const;

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// N of "*N".
+/// The number N in "*N"; none if the name has another form.
 std::optional<std::size_t> embeddedIndex(std::string_view name) {
   std::size_t index = 0;
   const char* end = name.data() + name.size();
@@ -58,13 +58,13 @@ void openFile(TextureSource& source, const fs::path& path) {
   source.bytes = source.file->bytes();
 }
 
-/// `name` without folders of this machine.
+/// `name` without this machine's folders.
 std::string portableName(const std::string& name) {
   const fs::path path(name);
   return path.is_absolute() ? path.filename().generic_string() : path.generic_string();
 }
 
-/// Size and hash, which stand for the content.
+/// Size and hash, which identify the content.
 using Content = std::tuple<std::size_t, std::uint64_t, std::uint64_t>;
 
 Content contentOf(std::span<const std::byte> bytes) {

@@ -14,28 +14,28 @@
 
 namespace galactic::bake {
 
-/// An encoded image that materials name, or why there is none.
+/// An encoded image that materials name, or the reason why it is missing.
 struct TextureSource {
-  /// As the first material names it.
+  /// The name that the first material gives it.
   std::string name;
   /// Name of the first material that uses it, for warnings.
   std::string material;
   std::optional<MappedFile> file;
   std::span<const std::byte> bytes;
-  /// End of a sentence that begins "the image"; empty when there are bytes.
+  /// End of a sentence that begins with "the image"; empty if there are bytes.
   std::string fault;
-  /// The importer has told of the fault.
+  /// Whether the importer has already reported the fault.
   bool fault_is_known = false;
 };
 
-/// The distinct images of a list of materials: equal files under several names count once.
+/// The distinct images of a list of materials. Equal files under several names count once.
 struct TextureSources {
   std::vector<TextureSource> sources;
-  /// For each material the index of its image; none where it has no texture.
+  /// For each material, the index of its image; none if it has no texture.
   std::vector<std::optional<std::size_t>> of_material;
 };
 
-/// Opens what the materials name. What is embedded must outlive the result.
+/// Opens the images that the materials name. Embedded images must outlive the result.
 [[nodiscard]] TextureSources openTextures(std::span<const SourceMaterial> materials,
                                           const TextureFiles& files);
 

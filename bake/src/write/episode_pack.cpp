@@ -14,10 +14,10 @@
 namespace galactic::bake {
 namespace {
 
-/// What rounding to floats can do to a length of 1, and more.
+/// More than the effect of rounding to floats on a length of 1.
 constexpr double kUnitTolerance = 5e-4;
 
-/// Angles and joint positions, as readers of packs accept them.
+/// Limit of the angles and joint positions that readers of packs accept.
 constexpr float kMostAngle = 1e9F;
 
 bool isPlace(const Vec3& v) {
@@ -36,7 +36,7 @@ bool isRigid(const Pose& pose) {
   return isPlace(pose.translation) && std::abs(length - 1) <= kUnitTolerance;
 }
 
-/// Compares episodes with what the schema wants; keeps the first offence.
+/// Checks episodes against the schema's requirements; keeps the first error.
 class EpisodeCheck {
  public:
   explicit EpisodeCheck(const SourceEpisodes& source) : source_(source) {}
@@ -121,12 +121,12 @@ class EpisodeCheck {
   Result<void> result_;
 };
 
-/// Exports turn rotations to the frames of mesh files, imports turn them back, both in double
-/// precision: each part comes back to about 4e-16. So that this is the same float, parts are
+/// Exports rotate to the frames of mesh files and imports rotate back, both in double precision,
+/// which restores each component to about 4e-16. So that this gives the same float, components are
 /// multiples of 2^-48 (4e-15), as all floats from 2^-25 on are.
 Quat rounded(const Quat& rotation) {
   constexpr double kSteps = 0x1p48;
-  // The sum makes 0 of -0.
+  // Adding 0 turns -0 into 0.
   const auto round = [](float part) {
     return static_cast<float>(std::nearbyint(static_cast<double>(part) * kSteps) / kSteps + 0.0);
   };

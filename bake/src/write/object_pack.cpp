@@ -31,7 +31,7 @@ Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject
   const auto stable_poses = alignedStructs<schema::StablePose>(builder, object.stable_poses);
   const auto imported = importStatistics(builder, object.imported);
   const auto surface = surfaceTable(builder, object.surface);
-  // Nothing is stored where the hull fills the box.
+  // Stores no planes if the hull fills the box.
   const auto hull_planes = object.hull_planes.empty()
                                ? Offset<flatbuffers::Vector<const schema::HullPlane*>>{}
                                : alignedStructs<schema::HullPlane>(builder, object.hull_planes);
@@ -45,7 +45,7 @@ Offset<schema::Object> objectTable(FlatBufferBuilder& builder, const BakedObject
                               surface, hull_planes);
 }
 
-/// Those of all objects in one; none when no object has any.
+/// The render meshes of all objects merged into one; none if no object has any.
 Result<std::optional<BakedRenderMeshes>> mergedMeshes(
     const std::vector<const BakedObject*>& objects) {
   constexpr std::size_t kMostMaterials = 65536;

@@ -14,7 +14,7 @@ schema::LengthStatistics toSchema(const LengthStatistics& lengths) {
   return {lengths.mean, lengths.p95, lengths.max};
 }
 
-/// Whether a pack passes what whoever opens it checks.
+/// Fails if a pack does not pass the checks made when it is opened.
 Result<void> checkOwn(std::span<const std::byte> file, const std::filesystem::path& path) {
   const auto opened = PackFile::view(file, path.string());
   if (opened) return {};
@@ -89,7 +89,7 @@ std::vector<std::byte> finishPack(FlatBufferBuilder& builder, Offset<schema::Pro
 Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind kind,
                                     std::span<const std::byte> payload) {
   const PackHeader header = makePackHeader(kind, payload);
-  // In one piece, as the checks see files.
+  // In one piece of memory, as the checks expect files.
   std::vector<std::byte, PackAllocator<std::byte>> file(sizeof(header) + payload.size());
   std::memcpy(file.data(), &header, sizeof(header));
   std::memcpy(file.data() + sizeof(header), payload.data(), payload.size());

@@ -16,14 +16,14 @@
 
 namespace galactic::bake {
 
-// What the writers of all kinds of packs share. Arguments of a call are built in statements of
-// their own: the order of a call's arguments is the compiler's choice, and the order in which
-// tables are built decides the bytes.
+// Helpers shared by the writers of all kinds of packs. Build each table in its own statement and
+// not inside the arguments of a call: the compiler chooses the order in which arguments are
+// evaluated, and the order in which tables are built determines the bytes.
 
 using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
-/// What FlatBuffers 2.0 aligns to at most.
+/// The greatest alignment that FlatBuffers 2.0 supports.
 inline constexpr std::size_t kVectorAlignment = 32;
 
 [[nodiscard]] inline schema::Vec3 toSchema(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -35,7 +35,7 @@ inline constexpr std::size_t kVectorAlignment = 32;
   return {toSchema(bounds.min), toSchema(bounds.max)};
 }
 
-/// A vector of numbers, aligned as the runtime reads it.
+/// A vector of numbers with the alignment that the runtime needs.
 template <class T>
 [[nodiscard]] Offset<flatbuffers::Vector<T>> alignedVector(FlatBufferBuilder& builder,
                                                            std::span<const T> values) {
@@ -43,7 +43,7 @@ template <class T>
   return builder.CreateVector(values.data(), values.size());
 }
 
-/// A vector of structs of ours that have the layout of the schema's struct `Stored`.
+/// A vector of our structs, which have the same layout as the schema's struct `Stored`.
 template <class Stored, class Structs>
 [[nodiscard]] Offset<flatbuffers::Vector<const Stored*>> alignedStructs(FlatBufferBuilder& builder,
                                                                         const Structs& values) {
@@ -62,17 +62,18 @@ template <class Stored, class Structs>
 [[nodiscard]] Offset<schema::Surface> surfaceTable(FlatBufferBuilder& builder,
                                                    const Surface& surface);
 
-/// FlatBuffers offsets are signed 32-bit; what is not a surface is small.
+/// Limit for surfaces: FlatBuffers offsets are signed 32-bit, and everything else in a pack is
+/// small.
 inline constexpr std::uint64_t kMaxSurfaceBytes =
     (std::uint64_t{1} << 31U) - (std::uint64_t{64} << 20U);
 
-/// Bytes of a surface in a pack.
+/// Bytes that a surface takes in a pack.
 [[nodiscard]] inline std::uint64_t storedBytes(const Surface& surface) {
   return surface.positions.size() * sizeof(Vec3) + surface.triangles.size() * sizeof(Triangle) +
          surface.colors.size() * sizeof(std::uint32_t);
 }
 
-/// What was asked of a sphere set.
+/// The tolerances requested for a sphere set.
 struct SphereTolerances {
   float eps = 0;
   float tau = 0;
@@ -83,13 +84,13 @@ struct SphereTolerances {
                                                                    const SphereSet& set,
                                                                    const SphereTolerances& asked);
 
-/// The finished payload of a pack.
+/// Finishes and returns the payload of a pack.
 [[nodiscard]] std::vector<std::byte> finishPack(FlatBufferBuilder& builder,
                                                 Offset<schema::Provenance> provenance,
                                                 schema::Asset type, Offset<void> asset);
 
-/// Writes header and payload atomically; returns the file's size in bytes. Fails with kInternal,
-/// and writes nothing, where they do not pass what whoever opens the pack checks.
+/// Writes header and payload atomically and returns the file's size in bytes. Fails with kInternal,
+/// and writes nothing, if the result does not pass the checks made when a pack is opened.
 [[nodiscard]] Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind kind,
                                                   std::span<const std::byte> payload);
 

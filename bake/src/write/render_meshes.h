@@ -4,7 +4,7 @@
 
 namespace galactic::bake {
 
-/// The table of a scene, object set or robot.
+/// Builds the render meshes' table of a scene, object set or robot.
 [[nodiscard]] Offset<schema::RenderMeshes> renderMeshesTable(FlatBufferBuilder& builder,
                                                              const BakedRenderMeshes& meshes);
 

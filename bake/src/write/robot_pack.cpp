@@ -21,7 +21,7 @@ Offset<schema::SphereGroup> groupTable(FlatBufferBuilder& builder, const BakedGr
       static_cast<std::uint32_t>(group.spheres.spheres.size()), statistics);
 }
 
-/// Field by field: the padding of a struct of ours would not be zero.
+/// Copied field by field, because the padding in our structs would not be zero.
 std::vector<schema::LinkFrame> linkFrames(const std::vector<LinkFrame>& links) {
   std::vector<schema::LinkFrame> stored;
   stored.reserve(links.size());
@@ -56,7 +56,7 @@ Offset<flatbuffers::Vector<Offset<schema::LinkSurface>>> linkSurfaces(FlatBuffer
   return builder.CreateVector(surfaces);
 }
 
-/// What the recipe adds; null offsets without one.
+/// The tables that the recipe adds; null offsets without a recipe.
 struct RecipeTables {
   Offset<flatbuffers::Vector<const schema::ControlledJoint*>> controlled_joints;
   Offset<schema::EndEffector> end_effector;

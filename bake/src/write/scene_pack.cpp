@@ -14,9 +14,10 @@
 namespace galactic::bake {
 namespace {
 
-/// FlatBuffers offsets are signed 32-bit; the rest of a pack is small beside its grids.
+/// Limit for grids: FlatBuffers offsets are signed 32-bit, and the rest of a pack is small compared
+/// with its grids.
 constexpr std::uint64_t kMaxGridBytes = (std::uint64_t{1} << 31U) - (std::uint64_t{64} << 20U);
-/// The cells with the unused elements behind them; `shiftTilesToCacheLines` moves them in place.
+/// The cells, followed by unused elements. `shiftTilesToCacheLines` moves the cells into place.
 Offset<flatbuffers::Vector<std::uint64_t>> cellVector(FlatBufferBuilder& builder,
                                                       const std::vector<std::uint64_t>& cells) {
   const std::size_t count = cells.size() + kTilePaddingCells;
@@ -92,7 +93,8 @@ Offset<schema::Scene> sceneTable(FlatBufferBuilder& builder, const BakedScene& s
   return schema::CreateScene(builder, name, &bounds, grid_vector, import_statistics, render_meshes);
 }
 
-/// Moves each grid's tiles to the first cache line of the file inside their vector.
+/// Moves the tiles of each grid to the first boundary of a cache line, relative to the file, inside
+/// their vector.
 void shiftTilesToCacheLines(std::span<std::byte> payload) {
   const schema::Scene* scene = schema::GetPack(payload.data())->asset_as_Scene();
   for (const schema::ColumnGrid* grid : *scene->column_grids()) {

@@ -23,8 +23,8 @@ bool leadsUpwards(const fs::path& path) {
   return path.empty() || path.is_absolute() || *path.begin() == "..";
 }
 
-/// `path` seen from `folder`: as it is written, or, where that leads out of the folder, without
-/// symbolic links.
+/// `path` relative to `folder`: as it is written or, if that leads out of the folder, with symbolic
+/// links resolved.
 fs::path relativeTo(const fs::path& path, const fs::path& folder) {
   std::error_code problem;
   const fs::path from = fs::absolute(folder / "", problem).lexically_normal();
@@ -35,7 +35,7 @@ fs::path relativeTo(const fs::path& path, const fs::path& folder) {
   return problem ? as_written : real.lexically_relative(real_folder);
 }
 
-/// Why a path of a world's list is none; empty for a good one.
+/// The fault of a path in a world's list; empty if it is valid.
 std::string_view faultOf(std::string_view path) {
   if (path.empty()) return "is empty";
   if (path.find('\0') != std::string_view::npos) return "holds a zero byte";
@@ -86,7 +86,7 @@ Result<void> checkList(const std::vector<LinkedPack>& packs) {
   return checkCounts(packs);
 }
 
-/// None where there are none: such a world has the bytes that it always had.
+/// Null if there are no options, so that the bytes of such a world do not depend on this field.
 Offset<flatbuffers::Vector<Offset<schema::Option>>> taskVector(FlatBufferBuilder& builder,
                                                                std::span<const OptionText> task) {
   if (task.empty()) return 0;
@@ -111,7 +111,7 @@ Result<PackFile> openTexture(const PackFile& pack, const MissingTexture& texture
                   texture.name, beside.string()));
 }
 
-/// Adds the texture packs that the packs share and that are not among them.
+/// Adds the shared texture packs that the packs use but that are not among them.
 Result<void> addTextures(std::vector<PackFile>& packs) {
   SharedTextures textures;
   for (const PackFile& pack : packs) {
@@ -120,7 +120,7 @@ Result<void> addTextures(std::vector<PackFile>& packs) {
   const std::size_t given = packs.size();
   for (std::size_t n = 0; n < given; ++n) {
     const auto meshes = renderMeshesOf(packs[n], textures);
-    // A pack of another kind has none.
+    // Packs of other kinds have no render meshes.
     if (!meshes || !*meshes) continue;
     for (const MissingTexture& missing : (*meshes)->missing_textures) {
       if (textures.find(missing.hash_low, missing.hash_high) != nullptr) continue;

@@ -17,7 +17,7 @@ std::vector<std::uint8_t> encodeBc1(const std::vector<std::uint8_t>& rgba, std::
   for (std::size_t edge = size; edge > 0; level += edge * edge * 4, edge /= 2) {
     for (std::size_t y = 0; y < edge; y += 4) {
       for (std::size_t x = 0; x < edge; x += 4) {
-        // Levels under 4 texels are repeated to fill their block.
+        // Levels smaller than 4 texels are repeated to fill their block.
         std::array<std::uint8_t, 64> block{};
         for (std::size_t i = 0; i < 16; ++i) {
           const std::size_t from = ((y + i / 4) % edge) * edge + (x + i % 4) % edge;

@@ -21,7 +21,7 @@ struct Signature {
   std::string_view name;
 };
 
-/// Formats that people do find in their assets.
+/// Other formats that occur in assets, for messages.
 constexpr std::array kOtherFormats{
     Signature{"\xABKTX 20\xBB\r\n\x1A\n"sv, 0, "KTX2 (Basis)"},
     Signature{"\xABKTX 11\xBB\r\n\x1A\n"sv, 0, "KTX"},
@@ -46,7 +46,7 @@ bool hasAt(std::string_view file, std::size_t offset, std::string_view bytes) {
 
 std::string otherFormat(std::string_view file) {
   if (file.empty()) return "is empty";
-  // A TGA has its signature at its end.
+  // A TGA file has its signature at the end.
   constexpr std::string_view kTgaEnd = "TRUEVISION-XFILE.\0"sv;
   if (file.ends_with(kTgaEnd)) return "is TGA; expected PNG or JPEG";
   for (const Signature& format : kOtherFormats) {

@@ -13,8 +13,8 @@
 namespace galactic::bake {
 namespace {
 
-/// libjpeg's error handler, with what it said. The library's part comes first, so that a pointer to
-/// it is a pointer to the whole. Plain data: errors jump.
+/// libjpeg's error handler and its message. The library's part comes first, so that a pointer to it
+/// is also a pointer to the whole. Plain data, because errors jump.
 struct JpegErrors {
   jpeg_error_mgr manager;
   std::jmp_buf jump;
@@ -39,7 +39,7 @@ struct JpegReader {
   std::longjmp(errors.jump, 1);
 }
 
-/// The library calls damage a warning and goes on with gray.
+/// The library reports damage as a warning and continues with gray.
 void onMessage(j_common_ptr decoder, int level) {
   const int code = decoder->err->msg_code;
   const bool harmless = level >= 0 || code == JWRN_EXTRANEOUS_DATA || code == JWRN_ADOBE_XFORM ||
@@ -49,7 +49,7 @@ void onMessage(j_common_ptr decoder, int level) {
 
 void onOutput(j_common_ptr) {}
 
-/// Reads up to the first texel. Nothing with a destructor lives here: errors jump out.
+/// Reads up to the first texel. Has no objects with destructors, because errors jump out of it.
 bool readHeader(JpegReader& reader, std::span<const std::byte> file) {
   reader.decoder.err = jpeg_std_error(&reader.errors.manager);
   reader.errors.manager.error_exit = onError;
@@ -71,7 +71,7 @@ bool readRows(JpegReader& reader, std::uint8_t* rgb) {
     JSAMPROW row = rgb + std::size_t{decoder.output_scanline} * decoder.output_width * 3;
     jpeg_read_scanlines(&decoder, &row, 1);
   }
-  // Reads what is left, so that damage at the end is noticed, too.
+  // Reads the rest, so that damage at the end is also noticed.
   jpeg_finish_decompress(&decoder);
   return true;
 }

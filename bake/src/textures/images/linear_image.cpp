@@ -7,7 +7,8 @@
 namespace galactic::bake {
 namespace {
 
-/// For each texel of a row of the result, the texels of the source that it is made of.
+/// For each texel in a row of the result, the source texels that it is computed from and their
+/// weights.
 class Taps {
  public:
   Taps(std::uint32_t source, std::uint32_t result) {
@@ -30,7 +31,8 @@ class Taps {
   }
 
  private:
-  /// Texel i covers i * source / result to (i + 1) * source / result, in whole numbers of 1/result.
+  /// Texel i covers i * source / result to (i + 1) * source / result. Computed exactly, in units of
+  /// 1 / result.
   void addArea(std::uint64_t i, std::uint64_t source, std::uint64_t result) {
     const std::uint64_t begin = i * source;
     const std::uint64_t end = begin + source;
@@ -43,7 +45,7 @@ class Taps {
     }
   }
 
-  /// Equal sizes give a weight of 1 alone.
+  /// Equal sizes give a single weight of 1.
   void addLinear(std::uint32_t i, std::uint32_t source, std::uint32_t result) {
     const double center = (i + 0.5) * source / result - 0.5;
     const double clamped = std::clamp(center, 0.0, static_cast<double>(source - 1));

@@ -8,7 +8,7 @@
 
 namespace galactic::bake {
 
-/// R, G, B in linear light, multiplied with alpha; alpha.
+/// R, G, B in linear light, premultiplied with alpha, and alpha.
 using LinearTexel = std::array<float, 4>;
 
 /// A square image; rows from top to bottom.
@@ -17,16 +17,16 @@ struct LinearImage {
   std::vector<LinearTexel> texels;
 };
 
-/// What happens to an image's alpha.
+/// How to treat an image's alpha.
 enum class AlphaUse { kIgnored, kKept };
 
-/// `image` stretched to a square of `size` texels, in linear light, colors weighted with alpha:
-/// by area where it shrinks, linearly between texels' centers where it grows, unchanged where
-/// it does neither. Ignored alpha is 1.
+/// `image` resampled to a square of `size` texels per edge, in linear light, with colors weighted
+/// by alpha. Each axis is averaged by area if it shrinks, interpolated between texel centers if it
+/// grows, and otherwise unchanged. Ignored alpha becomes 1.
 [[nodiscard]] LinearImage resampled(const Image& image, std::uint32_t size, AlphaUse alpha,
                                     const TransferFunction& transfer);
 
-/// The mean of each 2 x 2 texels. `image.size`: even.
+/// The image at half the size: the mean of each block of 2 x 2 texels. `image.size` must be even.
 [[nodiscard]] LinearImage halved(const LinearImage& image);
 
 }  // namespace galactic::bake

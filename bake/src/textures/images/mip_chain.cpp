@@ -6,8 +6,8 @@
 namespace galactic::bake {
 namespace {
 
-/// The alpha from which on a texel has to be visible, so that the visible share of `level` comes as
-/// near to `coverage` as it can.
+/// The least alpha of visible texels that brings the visible share of `level` as near to `coverage`
+/// as possible.
 float visibleFrom(const LinearImage& level, double coverage) {
   std::vector<float> alphas;
   alphas.reserve(level.texels.size());
@@ -20,7 +20,7 @@ float visibleFrom(const LinearImage& level, double coverage) {
   return 0.5F * (alphas[visible - 1] + alphas[visible]);
 }
 
-/// Straight alpha as a byte, on the same side of the cutoff as `alpha` is of `from`.
+/// Straight alpha as a byte, on the same side of `cutoff` as `alpha` is of `from`.
 std::uint8_t encodedAlpha(float alpha, float from, float cutoff) {
   const int least_visible = static_cast<int>(std::ceil(cutoff * 255));
   const float scaled = from > 0 ? alpha * (cutoff / from) : 1.F;
@@ -29,7 +29,8 @@ std::uint8_t encodedAlpha(float alpha, float from, float cutoff) {
                                                  : std::min(byte, least_visible - 1));
 }
 
-/// Colors not multiplied with alpha. Where there is no alpha, the color of the level below.
+/// Colors without the multiplication by alpha. Where alpha is 0, the color of the next smaller
+/// level.
 std::vector<std::array<float, 3>> straightColors(const LinearImage& level,
                                                  const std::vector<std::array<float, 3>>& below) {
   const std::size_t size = level.size;
@@ -56,7 +57,7 @@ std::vector<std::uint8_t> encodeMipChain(LinearImage base, const CutOut& cut_out
   std::vector<std::uint8_t> chain(textureBytes(levels.front().size, TexelFormat::kRgba8));
   std::size_t end = chain.size();
   std::vector<std::array<float, 3>> colors;
-  // From the smallest level up, because the larger ones borrow colors.
+  // From the smallest level up, because larger ones take colors from it.
   for (std::size_t n = levels.size(); n-- > 0;) {
     const LinearImage& level = levels[n];
     colors = straightColors(level, colors);

@@ -12,7 +12,8 @@
 namespace galactic::bake {
 namespace {
 
-/// What libpng's callbacks see. Plain data: libpng reports errors by a long jump.
+/// The state that libpng's callbacks use. Plain data, because libpng reports errors with a long
+/// jump.
 struct PngInput {
   const std::byte* at = nullptr;
   std::size_t left = 0;
@@ -49,21 +50,21 @@ void readBytes(png_structp png, png_bytep to, std::size_t bytes) {
 
 void onWarning(png_structp, png_const_charp) {}
 
-/// Reads up to the first texel. Nothing with a destructor lives here and in the next two: errors
-/// jump out.
+/// Reads up to the first texel. This and the next two functions have no objects with destructors,
+/// because errors jump out of them.
 bool readHeader(const PngHandles& handles, PngInput& input) {
   png_structp png = handles.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &input, readBytes);
-  // A damaged chunk may be the one with the transparency.
+  // Fail on damaged chunks, because one may hold the transparency.
   png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-  // Sizes are judged by sizeFault, which says what it found.
+  // Disable libpng's limits, because sizeFault checks sizes and gives a better message.
   png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_read_info(png, handles.info);
   return true;
 }
 
-/// Asks for four bytes a texel. Allocates rows, so the size has been judged.
+/// Requests four bytes per texel. Allocates rows, so the size must have been checked.
 bool prepareRows(const PngHandles& handles) {
   png_structp png = handles.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
