@@ -40,28 +40,28 @@ class NetworkSettings:
     network: str = setting(
         "resnet18",
         "Network",
-        "`state` sees no images, `depth` depth alone, with few channels; the others are the paper's "
-        "(table 4); or one of your own, `FILE.py:CLASS` or `MODULE:CLASS`",
+        "`state` sees no images, `depth` sees only depth and has few channels, the others are the paper's "
+        "(table 4); or a network of your own: `FILE.py:CLASS` or `MODULE:CLASS`",
         choices=tuple(SIGHT),
         may_be_own=True,
     )
     network_options: str = setting(
         "",
         "Network",
-        "what its class is made with, as NAME=VALUE separated by spaces",
+        "arguments of the network's class, as NAME=VALUE separated by spaces",
         scope=OF_OWN_NETWORKS,
     )
     sees: str = setting(
         "none",
         "Network",
-        "which images a network of your own sees; `rgbd` are `rgb` and `depth`",
+        "which images a network of your own sees; `rgbd` is `rgb` and `depth`",
         choices=tuple(OWN_SIGHT),
         scope=OF_OWN_NETWORKS,
     )
     camera: str = setting(
         "head",
         "Network",
-        "what the network sees: the recipe's camera (`head`), `follow`, `top`, or a link",
+        "the camera through which the network sees: the recipe's (`head`), `follow`, `top`, or a link",
         scope=OF_IMAGES,
     )
     fov: float = setting(
@@ -75,8 +75,7 @@ class NetworkSettings:
     camera_position: tuple[float, float, float] = setting(
         (0.0, 0.0, 0.0),
         "Network",
-        "where the camera is, seen from where that camera or link has it: meters ahead, to the left "
-        "and up",
+        "offset from the place of that camera or link: meters ahead, to the left and up",
         low=-100.0,
         high=100.0,
         scope=OF_IMAGES,
@@ -84,7 +83,7 @@ class NetworkSettings:
     camera_rpy: tuple[float, float, float] = setting(
         (0.0, 0.0, 0.0),
         "Network",
-        "how it is turned there, degrees: roll, pitch (down is positive), yaw",
+        "rotation of the camera there, degrees: roll, pitch (down is positive), yaw",
         low=-360.0,
         high=360.0,
         scope=OF_IMAGES,
@@ -92,7 +91,7 @@ class NetworkSettings:
     near: float = setting(
         0.0,
         "Network",
-        "meters along the camera's axis below which nothing is drawn, 0.01 at least; 0: the camera's",
+        "distance along the camera's axis below which nothing is drawn, meters, at least 0.01; 0: the camera's",
         low=0.0,
         high=100.0,
         scope=OF_IMAGES,
@@ -108,7 +107,7 @@ class NetworkSettings:
     depth_noise: Drawn = setting(
         0.0,
         "Network",
-        "standard deviation of the depth that the network sees, at 1 m, meters; it grows with depth squared",
+        "standard deviation at 1 m of the depth that the network sees, meters; it grows with the square of depth",
         low=0.0,
         high=_MOST_NOISE["depth_noise"],
         may_be_range=True,
@@ -117,7 +116,7 @@ class NetworkSettings:
     depth_dropout: Drawn = setting(
         0.0,
         "Network",
-        "share of the pixels without depth",
+        "share of the pixels that have no depth",
         low=0.0,
         high=_MOST_NOISE["depth_dropout"],
         may_be_range=True,
@@ -126,7 +125,7 @@ class NetworkSettings:
     color_noise: Drawn = setting(
         0.0,
         "Network",
-        "standard deviation of each channel of color, levels of 255",
+        "standard deviation of each color channel, in levels of 255",
         low=0.0,
         high=_MOST_NOISE["color_noise"],
         may_be_range=True,
@@ -135,7 +134,7 @@ class NetworkSettings:
     light_jitter: Drawn = setting(
         0.0,
         "Network",
-        "colors of an episode are multiplied by a number from 1 - this to 1 + this",
+        "each episode multiplies its colors by a number from 1 - this to 1 + this",
         low=0.0,
         high=_MOST_NOISE["light_jitter"],
         may_be_range=True,
@@ -144,7 +143,7 @@ class NetworkSettings:
     camera_jitter: Drawn = setting(
         0.0,
         "Network",
-        "how far the camera may be from its place in an episode, along each of its axes, meters",
+        "how far an episode may shift the camera along each of its axes, meters",
         low=0.0,
         high=_MOST_NOISE["camera_jitter"],
         may_be_range=True,
@@ -153,7 +152,7 @@ class NetworkSettings:
     camera_jitter_degrees: Drawn = setting(
         0.0,
         "Network",
-        "the same of its roll, pitch and yaw, degrees",
+        "how far an episode may turn the camera in roll, pitch and yaw, degrees",
         low=0.0,
         high=_MOST_NOISE["camera_jitter_degrees"],
         may_be_range=True,
@@ -162,7 +161,7 @@ class NetworkSettings:
     camera_jitter_fov: Drawn = setting(
         0.0,
         "Network",
-        "the same of its vertical field of view, degrees",
+        "how far an episode may change the vertical field of view, degrees",
         low=0.0,
         high=_MOST_NOISE["camera_jitter_fov"],
         may_be_range=True,
@@ -171,13 +170,13 @@ class NetworkSettings:
     recurrent: bool = setting(
         False,
         "Network",
-        "put a GRU into the network `state` or `depth`, or behind one of your own; the paper's always have one",
+        "put a GRU into the network `state` or `depth`, or behind a network of your own; the paper's always have one",
         scope=OF_CHOSEN_LAYERS,
     )
     width: int = setting(
         128,
         "Network",
-        "units per layer of `state` and `depth`, and of the GRU behind one of your own",
+        "units per layer of `state` and `depth`, and of the GRU behind a network of your own",
         low=1,
         high=65536,
         scope=OF_WIDTHS,
@@ -208,7 +207,7 @@ class NetworkSettings:
     initial_log_std: float = setting(
         -0.5,
         "Network",
-        "initial value of the parameters of `log_std`",
+        "initial value of the log standard deviations, if these are a parameter",
         low=-5.0,
         high=2.0,
         scope=OF_PARAMETERS,
@@ -216,8 +215,8 @@ class NetworkSettings:
     final_log_std: float = setting(
         2.0,
         "Network",
-        "upper limit of these parameters at the end of the run; the limit falls from "
-        "`initial_log_std` over the last four fifths; 2: no limit",
+        "upper limit of these parameters at the end of the run; it falls from "
+        "`initial_log_std` over the last four fifths of the run; 2: no limit",
         low=-5.0,
         high=2.0,
         scope=OF_PARAMETERS,
@@ -226,8 +225,8 @@ class NetworkSettings:
     odds_limit: float = setting(
         0.0,
         "Network",
-        "what the log-odds of a decision stay below, so that none is so certain that the other is "
-        "never tried: with 4 it is in one step of 56; 0: no limit",
+        "limit of the log-odds of a decision, so that no choice is so certain that the other is "
+        "never tried: with 4, it is tried at least once in 56 steps; 0: no limit",
         low=0.0,
     )
     normalize: bool = setting(
@@ -236,21 +235,21 @@ class NetworkSettings:
     closeup: float = setting(
         0.0,
         "Network",
-        "also show the network tanh(x / this) of each number x of the observation, so that "
-        "centimeters near zero count beside meters; 0: off",
+        "also show the network tanh(x / this) for each number x of the observation, so that "
+        "centimeters near zero count as well as meters; 0: off",
         low=0.0,
     )
     second_closeup: float = setting(
         0.0,
         "Network",
-        "the same with another divisor, beside the first or alone; 0: off",
+        "the same with another divisor, in addition to `closeup` or without it; 0: off",
         low=0.0,
     )
     critic_only: str = setting(
         "",
         "Network",
-        "sensors that the critic alone sees, such as `geodesic`, with commas between: they teach the "
-        "policy, which acts without them",
+        "sensors that only the critic sees, such as `geodesic`, separated by commas: they help to train "
+        "the policy, which acts without them",
     )
 
     @property

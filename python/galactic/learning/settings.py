@@ -28,7 +28,7 @@ class _RunSettings:
     halves: int = setting(
         2,
         "Run",
-        "groups of envs: with 2, one simulates while the network acts on the other",
+        "groups of envs: with 2, one group simulates while the network acts for the other",
         low=1,
         high=2,
         is_of_acting=True,
@@ -36,22 +36,22 @@ class _RunSettings:
     simulation: str = setting(
         "",
         "Run",
-        "options of the simulation, as NAME=VALUE separated by spaces (those of galactic-run); each "
-        "overrides the preset's of its name",
+        "options of the simulation (those of galactic-run), as NAME=VALUE separated by spaces; each "
+        "overrides the preset's option of the same name",
     )
     task: str = setting(
         "",
         "Run",
-        "a task of your own, which says what pays and what ends an episode: `FILE.py:CLASS` or "
+        "a task of your own, which defines rewards and the ends of episodes: `FILE.py:CLASS` or "
         "`MODULE:CLASS`",
     )
     task_options: str = setting(
-        "", "Run", "what its class is made with, as NAME=VALUE separated by spaces"
+        "", "Run", "arguments of the task's class, as NAME=VALUE separated by spaces"
     )
     terminate: str = setting(
         "auto",
         "Run",
-        "who decides to terminate: the policy (`learned`), nobody (`never`), or the policy if the "
+        "who decides when to terminate: the policy (`learned`), nobody (`never`), or the policy if the "
         "task asks for it (`auto`)",
         choices=("auto", "learned", "never"),
     )
@@ -65,14 +65,14 @@ class Settings(NetworkSettings, _RunSettings):
     # Behind those of the bases, of which the last one comes first.
     learning_rate: float = setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
     learning_rate_end: float = setting(
-        0.0, "PPO", "learning rate at the end; linear in between", low=0.0
+        0.0, "PPO", "learning rate at the end of the run, linear in between", low=0.0
     )
     target_kl: float = setting(
         0.0,
         "PPO",
-        "how much the policy should change in an update, nats: the mean over the mini-batches of an update "
-        "of the divergence before each one's step. Where it is larger, the learning rate goes down, and up "
-        "again to the schedule's where it is smaller; 0: always the schedule's",
+        "how much an update should change the policy, nats: the divergence before the step of each "
+        "mini-batch, averaged over the update. If it is larger, the learning rate goes down; if it is "
+        "smaller, the rate goes back up, at most to the schedule's; 0: always the schedule's",
         low=0.0,
         is_of_acting=True,
     )
@@ -93,28 +93,28 @@ class Settings(NetworkSettings, _RunSettings):
     value_clip: float = setting(
         0.0,
         "PPO",
-        "how far an update may move a value before its loss is flat; 0: any distance",
+        "how far an update may move a value before the loss becomes flat; 0: any distance",
         low=0.0,
         is_of_acting=True,
     )
     entropy: float = setting(
         1e-3,
         "PPO",
-        "coefficient of the entropy, a plain sum over motions and decisions",
+        "coefficient of the entropy, which is a plain sum over motions and decisions",
         low=0.0,
         is_of_acting=True,
     )
     entropy_end: float = setting(
         -1.0,
         "PPO",
-        "its value at the end of the run, linear in between; -1: no change",
+        "coefficient of the entropy at the end of the run, linear in between; -1: no change",
         low=-1.0,
         is_of_acting=True,
     )
     max_grad_norm: float = setting(
         2.0,
         "PPO",
-        "largest norm of the gradient; longer ones are scaled down; 0: any length",
+        "largest norm of the gradient; larger gradients are scaled down; 0: no limit",
         low=0.0,
     )
     gamma: float = setting(0.99, "PPO", "discount factor", low=0.0, high=1.0)
@@ -129,8 +129,8 @@ class Settings(NetworkSettings, _RunSettings):
     timeouts: str = setting(
         "observed",
         "PPO",
-        "what an episode that time cuts off is worth from there on: what its last observation is valued at "
-        "(`observed`), the same as if it had no limit of time (`endless`), or nothing (`ends`)",
+        "what an episode cut off by the time limit is worth from there on: the value of its last observation "
+        "(`observed`), its value if there were no time limit (`endless`), or nothing (`ends`)",
         choices=("endless", "ends", "observed"),
         is_of_acting=True,
     )
@@ -144,13 +144,13 @@ class Settings(NetworkSettings, _RunSettings):
     teacher_weight: float = setting(
         1.0,
         "PPO",
-        "weight of the divergence from what the `--teacher` would do, at the start of the run",
+        "weight, at the start of the run, of the divergence from what the `--teacher` would do",
         low=0.0,
     )
     teacher_share: float = setting(
         0.5,
         "PPO",
-        "share of the run over which that weight goes down to 0; the rest is learned by reward alone",
+        "share of the run over which that weight falls to 0; the rest of the run learns from rewards alone",
         low=0.0,
         high=1.0,
     )
@@ -166,7 +166,7 @@ class Settings(NetworkSettings, _RunSettings):
     sync_fraction: float = setting(
         0.6,
         "Ranks",
-        "once this share of the ranks has finished a rollout, the others stop theirs; 1: all wait",
+        "when this share of the ranks has finished a rollout, the others cut theirs short; 1: wait for all",
         low=0.0,
         high=1.0,
         is_of_acting=True,
@@ -174,7 +174,7 @@ class Settings(NetworkSettings, _RunSettings):
     shortest_rollout: float = setting(
         0.25,
         "Ranks",
-        "no rank is stopped before this share of its rollout, nor before its first step",
+        "no rank is cut short before this share of its rollout, nor before its first step",
         low=0.0,
         high=1.0,
         is_of_acting=True,
@@ -183,7 +183,7 @@ class Settings(NetworkSettings, _RunSettings):
     simulation_threads: int = setting(
         0,
         "Machine",
-        "threads per rank; 0: its share of the processors",
+        "threads per rank that simulate; 0: its share of the processors",
         low=0,
         high=4096,
         may_change=True,
@@ -191,8 +191,8 @@ class Settings(NetworkSettings, _RunSettings):
     torch_threads: int = setting(
         0,
         "Machine",
-        "threads per rank; 0: its share of the processors with images, 1 for `state`, whose layers are "
-        "too small to share",
+        "threads per rank that compute the network; 0: its share of the processors, or 1 for `state`, whose "
+        "layers are too small to split",
         low=0,
         high=4096,
         may_change=True,
@@ -200,26 +200,26 @@ class Settings(NetworkSettings, _RunSettings):
     precision: str = setting(
         "bf16",
         "Machine",
-        "precision of networks on a GPU; on processors always fp32",
+        "precision of networks on a GPU; always fp32 on processors",
         choices=("fp32", "tf32", "bf16"),
     )
     cuda_graphs: bool = setting(
         False,
         "Machine",
-        "on a GPU, launch what the policy computes in a rollout's step as one graph",
+        "on a GPU, launch all that the policy computes in a step of a rollout as one CUDA graph",
         is_of_acting=True,
     )
 
     validate_every: int = setting(
         10_000_000,
         "Reports",
-        "steps between validations, if there is a world for them; 0: none",
+        "steps between validations, if there is a validation world; 0: no validation",
         low=0,
     )
     validation_episodes: int = setting(
         200,
         "Reports",
-        "how many episodes of the validation world to play, from the first on; 0: all",
+        "how many episodes of the validation world to play, starting with the first; 0: all",
         low=0,
     )
     checkpoint_every: int = setting(
@@ -232,7 +232,7 @@ class Settings(NetworkSettings, _RunSettings):
     keep: int = setting(
         3,
         "Reports",
-        "how many of the latest checkpoints to keep, besides the best",
+        "how many of the latest checkpoints to keep, besides the best policy",
         low=1,
         may_change=True,
     )

@@ -45,7 +45,7 @@ def options_of(name: str) -> list[argparse.Action]:
 def test_defaults_are_shown_as_one_types_them() -> None:
     help_text = " ".join(train.make_parser().format_help().split())
     assert (
-        "a task of your own, which says what pays and what ends an episode: `FILE.py:CLASS`"
+        "a task of your own, which defines rewards and the ends of episodes: `FILE.py:CLASS`"
         in help_text
     )
     assert "('" not in help_text
