@@ -1,4 +1,4 @@
-"""What the programs of the package have in common: exit codes, and errors as sentences."""
+"""What the programs of the package share: exit codes, and error messages as sentences."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from galactic.learning.user_code import own_code
 from galactic.programs import UNSUPPORTED
 from galactic.streams import put
 
-# Those of all tools of the project.
+# The same exit codes as all tools of the project.
 OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4
 EXIT_CODES = (
     "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, also an exception of your own code, 4 internal, "
@@ -28,12 +28,12 @@ EXIT_CODES = (
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one line, with the exit code of all tools. Options are
-    typed whole, and once."""
+    """An argument parser whose errors take one line and exit with the same code as the other tools.
+    Options cannot be abbreviated or repeated."""
 
     def __init__(self, **keywords: Any) -> None:
         super().__init__(allow_abbrev=False, **keywords)
-        # What begins as a number does is a value: also -1e-3, and -0.1,0,0.2.
+        # Words that begin like a number are values, including -1e-3 and -0.1,0,0.2.
         self._negative_number_matcher = re.compile(r"-[0-9.]")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
@@ -68,7 +68,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def lost_output() -> galactic.Error:
-    """What there is to say where standard output has not taken what a program printed."""
+    """The error to report if standard output could not be written."""
     message = "cannot be written; check that it is open and that its disk has room"
     return galactic.Error(galactic.ErrorCode.IO, "standard output", message)
 
@@ -79,7 +79,8 @@ def program_of(prog: str) -> str:
 
 
 def whole(least: int, most: int) -> Callable[[str], int]:
-    """The type of an option that takes whole numbers of a range: digits alone."""
+    """The argparse type of an option that takes whole numbers within a range, written in digits
+    only."""
 
     def parse(text: str) -> int:
         if not re.fullmatch(r"-?[0-9]{1,20}", text) or not least <= int(text) <= most:
@@ -92,7 +93,8 @@ def whole(least: int, most: int) -> Callable[[str], int]:
 
 
 def named_path(text: str) -> pathlib.Path:
-    """The type of an option that takes a file or a folder. An empty name would be the current one."""
+    """The argparse type of an option that takes a file or a folder. Rejects an empty name, which
+    would mean the current folder."""
     if not text:
         raise argparse.ArgumentTypeError("is empty; name a file or a folder")
     return pathlib.Path(text)
@@ -101,7 +103,8 @@ def named_path(text: str) -> pathlib.Path:
 def add_device_option(
     parser: argparse.ArgumentParser, what: str, condition: str = "there is one"
 ) -> None:
-    """--device, as ranks.distributed.device_of() takes it. `what`: what it is about."""
+    """Adds --device, as ranks.distributed.device_of() takes it. `what`: what runs on the device,
+    for the help text."""
     parser.add_argument(
         "--device",
         default="auto",
@@ -115,9 +118,9 @@ def told(
     work: Callable[[], int],
     may_tell: Callable[[BaseException], bool] = lambda error: True,
 ) -> int:
-    """Does `work` and returns its exit code; what it refuses becomes a line on stderr, unless it may
-    not be told, and a code. What code of the user's raises is told with its lines, and so is what nobody has
-    thought of."""
+    """Calls `work` and returns its exit code. An exception becomes an exit code and a line on
+    stderr, unless `may_tell` returns false. Exceptions from the user's code and unexpected ones are
+    printed with their traceback."""
     try:
         with interrupts.raised():
             return work()
@@ -131,18 +134,18 @@ def told(
 
 
 _REFUSALS = (SettingsError, CheckpointError, galactic.Error, RankLost, KeyboardInterrupt)
-"""What says in a sentence what is wrong, whoever raises it."""
+"""Exceptions whose message is a sentence that says what is wrong, whoever raises them."""
 
 
 def _is_lack_of_memory(error: BaseException) -> bool:
-    """Torch says it in words."""
+    """Whether memory ran out. Torch reports this only in the text of a RuntimeError."""
     words = ("allocate memory", "out of memory", "not enough memory")
     is_torch = isinstance(error, RuntimeError) and any(word in str(error) for word in words)
     return is_torch or isinstance(error, MemoryError)
 
 
 def _told_as(error: BaseException) -> tuple[int, str]:
-    """Exit code and what there is to say."""
+    """The exit code and the message for an exception."""
     if not isinstance(error, _REFUSALS) and not _is_lack_of_memory(error):
         lines = "".join(traceback.format_exception(error)).rstrip()
         if own_code.has_raised(error):

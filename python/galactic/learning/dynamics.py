@@ -1,4 +1,5 @@
-"""The same policy where things have mass: runs the tool galactic-dynamics, which needs the bake side."""
+"""Plays a policy with real dynamics, where things have mass: runs the tool galactic-dynamics, which
+needs the bake side."""
 
 from __future__ import annotations
 
@@ -18,15 +19,15 @@ from galactic.learning.command import INTERRUPTED
 
 TOOL = "galactic-dynamics"
 EXACT = {"motion_noise": 0, "motion_bias": 0, "action_delay": 0}
-"""Options of the simulation, without which the tool refuses a world: what moves things there is off by
-itself."""
+"""Options of the simulation that the tool requires: in its world, dynamics make motions inexact."""
 
 
 @dataclass(frozen=True)
 class DynamicsRun:
-    """What galactic-dynamics is asked for. `pack`: what packed() made of the policy; `recipe`: what the world was baked from; `data`: where files of
-    the recipe are that are not beside it; `episodes`: the first so many, 0 for all; `threads`: 0 for one
-    per processor."""
+    """A run of galactic-dynamics. `pack`: what packed() made of the policy; `recipe`: what the
+    world was baked from; `data`: the folder of the recipe's files that are not beside it;
+    `episodes`: how many to play, from the first on, 0 for all; `threads`: 0 for one per
+    processor."""
 
     policy: pathlib.Path
     pack: bytes
@@ -41,7 +42,7 @@ class DynamicsRun:
 
 
 def require_tool() -> str:
-    """Where the tool is. Raises galactic.Error, saying what to install, where it is missing."""
+    """The path of the tool. If it is missing, raises galactic.Error, which says what to install."""
     found = shutil.which(TOOL)
     if found is None:
         raise galactic.Error(
@@ -53,7 +54,8 @@ def require_tool() -> str:
 
 
 def packed(policy: pathlib.Path, network: str | None) -> bytes:
-    """The policy pack that the tool plays. Raises what export_policy() does, before anything is played."""
+    """The policy pack for the tool. Raises what export_policy() raises, before anything is
+    played."""
     with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
         pack = pathlib.Path(folder) / f"{policy.stem}.pack"
         export_policy(policy, pack, network=network)
@@ -61,9 +63,9 @@ def packed(policy: pathlib.Path, network: str | None) -> bytes:
 
 
 def play(run: DynamicsRun) -> dict[str, Any]:
-    """Plays each episode in both worlds; the report of galactic-dynamics. What the tool says goes to where
-    this process says things. Raises galactic.Error where it fails, KeyboardInterrupt where it was
-    interrupted."""
+    """Plays each episode in both worlds; returns the report of galactic-dynamics. The tool prints
+    to the output of this process. Raises galactic.Error if the tool fails, KeyboardInterrupt if it
+    was interrupted."""
     tool = require_tool()
     with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
         pack = pathlib.Path(folder) / f"{run.policy.stem}.pack"
@@ -90,7 +92,8 @@ def play(run: DynamicsRun) -> dict[str, Any]:
 
 
 def noise_left_out(options: Mapping[str, Any]) -> str:
-    """What the tool leaves out of a simulation with these options, as a user types it; "" for nothing."""
+    """The options of the simulation that the tool does not apply, as a user types them; "" if there
+    are none."""
     left_out = [name for name, value in EXACT.items() if options[name] != value]
     return " ".join(f"{_typed(name)}={_shown(options[name])}" for name in left_out)
 
@@ -109,7 +112,7 @@ def _error_of(code: int) -> galactic.ErrorCode:
 
 
 def told(report: dict[str, Any]) -> dict[str, float]:
-    """What of a report stands beside the summary of an evaluation."""
+    """The numbers of a report that an evaluation adds to its summary."""
     success = report["success"]
     return {
         "success_in_dynamics": success["dynamics"]["share"],

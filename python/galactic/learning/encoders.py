@@ -1,5 +1,5 @@
-"""Encoders: from what a policy sees to features, a row of numbers for each step, which heads read. Networks of
-one's own (own_networks.py) are such encoders, too."""
+"""Encoders turn what a policy sees into features, a row of numbers per step, which the heads read.
+User-defined networks (own_networks.py) are encoders, too."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FEATURES = 512
 
 
 class Inputs(NamedTuple):
-    """What a policy sees, T steps of n envs."""
+    """What a policy sees in T steps of n envs."""
 
     state: Tensor  # [T, n, S] float32: a row of observations
     rgb: Tensor | None = None  # [T, n, H, W, 3] uint8
@@ -26,12 +26,12 @@ class Inputs(NamedTuple):
 
 
 class FullLinear(nn.Linear):
-    """A linear layer in float32, even where the layers around it are computed in bfloat16, whose 8 bits would blur
-    what they tell apart: meters of the state centimeters, values advantages, and log-stds the ratios of
-    probabilities."""
+    """A linear layer in float32, even if the layers around it are computed in bfloat16. The 8 bits
+    of bfloat16 are too few for what these layers must resolve: centimeters in a state in meters,
+    advantages in values, and ratios of probabilities in log-stds."""
 
     def forward(self, input: Tensor) -> Tensor:
-        # To enter a context costs a processor a third of a small layer.
+        # On a processor, entering the context takes a third of the time of a small layer.
         if not (torch.is_autocast_enabled() or torch.is_autocast_cpu_enabled()):
             return functional.linear(input, self.weight, self.bias)
         with torch.autocast(input.device.type, enabled=False):
@@ -41,24 +41,26 @@ class FullLinear(nn.Linear):
 class Encoder(nn.Module):
     """Inputs -> features [T, n, F].
 
-    With a memory of its own, forward() takes more, the memory before the first step, [n, M], and where
-    episodes begin, bool [T, n], and returns more, the memory after the last step:
+    An encoder with a memory of its own also takes the memory before the first step, [n, M], and
+    where episodes begin, bool [T, n], and also returns the memory after the last step:
 
         features, memory = encoder(inputs, memory, starts)
 
-    Where an episode begins, the memory is empty, which is all zeros: see sequences.run_gru().
+    Where an episode begins, the encoder must start from an empty memory, which is all zeros: see
+    sequences.run_gru().
     """
 
     features = 0
     """F."""
     memory = 0
-    """M, numbers for each env; 0: it has none."""
+    """M, numbers for each env; 0: no memory."""
     needs_previous = False
-    """Whether it reads Inputs.previous."""
+    """Whether the encoder reads Inputs.previous."""
 
 
 class Eyes(nn.Module):
-    """Convolutions -> numbers [T, n, F]: `layers` make F numbers of each picture, [C, H, W] as images() has it."""
+    """Convolutions over pictures -> numbers [T, n, F]: `layers` turn each picture, [C, H, W] as
+    from images(), into F numbers."""
 
     def __init__(self, layers: nn.Module):
         super().__init__()
@@ -170,7 +172,7 @@ class DepthCNN(nn.Module):
 
 
 class ResidualBlock(nn.Module):
-    """Two 3x3 convolutions and a way around them."""
+    """Two 3x3 convolutions with a skip connection."""
 
     def __init__(self, channels: int, width: int, stride: int):
         super().__init__()
@@ -211,10 +213,10 @@ class SpaceToDepth(nn.Module):
 
 
 def images(inputs: Inputs) -> Tensor:
-    """The pictures as a network wants them: [T n, C, H, W], in [0, 1], channels last in memory: red, green and
-    blue, if there are colors, then depth, if there is any.
+    """The pictures as networks read them: [T n, C, H, W], in [0, 1], channels last in memory. The
+    channels are red, green and blue, if there are colors, then depth, if there is any.
 
-    RGB stays bytes until here. Depth counts up to 10 m.
+    RGB stays in bytes until here. Depth is clamped to 10 m.
     """
     there = [part for part in (inputs.rgb, inputs.depth) if part is not None]
     assert there, "the network sees no images"
@@ -232,7 +234,8 @@ def images(inputs: Inputs) -> Tensor:
 
 
 class Tanh(nn.Tanh):
-    """tanh by way of a sigmoid: on processors three times as fast as torch's, and equal to 2e-7."""
+    """tanh computed from a sigmoid: on processors three times as fast as torch's, and equal to
+    within 2e-7."""
 
     def forward(self, input: Tensor) -> Tensor:
         return _SigmoidTanh.apply(input) if input.device.type == "cpu" else torch.tanh(input)

@@ -20,27 +20,28 @@ from galactic.learning.user_code.own_tasks import MakeTask
 from galactic.sensors import meaning_of
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
-# Cameras, where there are two.
+# Names of the cameras, if there are two.
 _EYE, _ONLOOKER = "eye", "onlooker"
 
 
 def camera_options(settings: Settings) -> dict[str, Any]:
-    """What the network sees, as options of galactic.Renderer."""
+    """The options of galactic.Renderer that draw what the network sees."""
     color = "rgb" if "rgb" in settings.sight else None
     chosen = {option: getattr(settings, name) for option, name in CAMERA.items()}
-    # Depth is drawn unless it is said.
+    # The renderer draws depth unless told otherwise.
     depth = {} if "depth" in settings.sight else {"depth": False}
     return {"color": color, **depth, **chosen}
 
 
 def exact_camera(settings: Settings) -> dict[str, Any]:
-    """The same without what makes noise."""
+    """The same without the options that add noise."""
     options = camera_options(settings)
     return {name: value for name, value in options.items() if name not in CAMERA_NOISE}
 
 
 def _as_typed(error: galactic.Error, keywords: Mapping[str, Any]) -> galactic.Error:
-    """Where it is about an option, the same error under the name that the trainer has for it."""
+    """The same error; if it is about an option, under the name that the trainer's command line has
+    for it."""
     where = error.where
     if where in CAMERA:
         where = option_name(CAMERA[where])
@@ -50,7 +51,7 @@ def _as_typed(error: galactic.Error, keywords: Mapping[str, Any]) -> galactic.Er
 
 
 def require_options(settings: Settings) -> None:
-    """Raises SettingsError or Error for options of the simulation that no world takes."""
+    """Raises SettingsError or Error for options of the simulation that are invalid in any world."""
     keywords = simulation_keywords(settings.simulation)
     try:
         galactic.Simulator.check_options(**keywords)
@@ -66,17 +67,19 @@ def sizes_of(parts: Sequence[tuple[str, int]]) -> str:
 
 
 class Homes:
-    """A galactic.VectorEnv as the trainer wants it. Observations land in the rollout: on a processor
-    they are written there by the simulator's threads, on a GPU they come by pinned memory.
+    """A galactic.VectorEnv with the trainer's interface. Observations land in the rollout: the
+    simulator's threads write them there directly, or by way of pinned memory if the rollout is on a
+    GPU.
 
-    `task` makes tasks of one's own, in the place of the simulation's, which are told whether it
-    `is_evaluation`. `onlooker`: options of a camera
-    more, whose color images are in `shown`. `device`: where networks run; if that is a CUDA device, images are
-    drawn there, too, or by the processor where nothing can draw there (`drawn_by` says what does).
+    `task` makes user-defined tasks, which replace the simulation's and receive `is_evaluation`.
+    `onlooker`: options of an additional camera, whose color images are in `shown`. `device`: where
+    networks run. On a CUDA device, images are drawn there, too, or by the processor if the device
+    cannot draw (`drawn_by` says what draws them).
 
-    What is drawn on a GPU does not stay there: Renderer.render() copies it to pinned memory, and recv() from there to
-    the rollout, on the GPU again, while the other half steps. Renderer.render_to_device() would spare both ways, but
-    draws all envs, also where a step draws again those few that begin an episode, and refuses noise, which the
+    Images drawn on a GPU do not stay there: Renderer.render() copies them to pinned memory, and
+    recv() copies them back to the rollout on the GPU while the other half steps.
+    Renderer.render_to_device() would avoid both copies, but it always draws all envs, although a
+    step redraws only the few that begin an episode, and it does not support noise, which the
     processor adds.
     """
 
@@ -87,14 +90,14 @@ class Homes:
                  device: torch.device = torch.device("cpu")):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
         images = camera_options(settings) if settings.sight else None
-        # What begins the names of the network's images.
+        # The prefix of the names of the network's images.
         self._eye = ""
         if onlooker is not None:
             images = {_ONLOOKER: {**onlooker, "depth": False}, **({_EYE: images} if images else {})}
             self._eye = f"{_EYE}_" if _EYE in images else ""
         self.shown: np.ndarray | None = None
-        """What the onlooker saw last, uint8 [n, height, width, 3], the end of an episode before the
-        beginning of the next one."""
+        """The latest images of the onlooker, uint8 [n, height, width, 3]. If a step ended an
+        episode, they show its end and not the beginning of the next one."""
 
         def made(**drawing: str) -> galactic.VectorEnv:
             return galactic.VectorEnv(
@@ -145,7 +148,7 @@ class Homes:
         return None
 
     def restart(self, seed: int) -> None:
-        """As if the homes had just been made with this seed."""
+        """Returns the homes to the state in which they would be made with this seed."""
         self.env.reset(seed=seed)
 
     def reset(self, into: Observation) -> None:
@@ -183,8 +186,8 @@ class Homes:
         return Step(rewards, *ended, timeouts, measures, logs, infos)
 
     def begin_episodes(self, episodes: Mapping[int, int], into: Observation) -> None:
-        """Begins an episode of the world, by its index, in some envs; the others stay. Writes what all
-        see then."""
+        """Begins the episode with the given index in each of the given envs; the other envs do not
+        change. Then writes the observations of all envs."""
         mask, numbers = np.zeros(self.count, np.bool_), np.full(self.count, -1, np.int64)
         for env, episode in episodes.items():
             mask[env], numbers[env] = True, episode
@@ -198,7 +201,7 @@ class Homes:
 
     @property
     def progress(self) -> float:
-        """What a task of one's own is told of how much of the training is over."""
+        """The share of the training that is over, 0 to 1, as user-defined tasks receive it."""
         return self.env.progress
 
     @progress.setter
@@ -207,19 +210,19 @@ class Homes:
 
     @property
     def are_limited(self) -> bool:
-        """Whether time ends an episode that nothing else ends."""
+        """Whether episodes have a time limit."""
         return bool(self.env.simulators[0].options["episode_steps"])
 
     def endings(self, half: int) -> np.ndarray:
-        """How episodes ended in the last step, as numbers of EpisodeEnd; [n]."""
+        """How episodes ended in the last step, as values of EpisodeEnd; [n]."""
         return self._landings[half]["endings"]
 
     def base_positions(self) -> np.ndarray:
-        """Where the bases of all robots stand, on the floor plane: x and z, meters, float32 [n, 2]."""
+        """The positions of the bases on the floor plane: x and z, meters, float32 [n, 2]."""
         return self.env.env_states().world_from_root.translation[:, [0, 2]]
 
     def collisions(self, env: int) -> tuple[int, int]:
-        """Steps of an env so far in which its robot was refused, and in which it slid."""
+        """How many steps of an env so far were refused, and in how many its robot slid."""
         half, row = divmod(env, self.count // len(self.halves))
         counted = self.env.simulators[half].statistics(row)
         return counted["refused"], counted["slid"]
@@ -241,11 +244,11 @@ class Homes:
         self._show(rows, {})
 
     def _named(self, name: str) -> str:
-        """What the env calls a part of an Observation."""
+        """The env's name for a part of an Observation."""
         return name if name == "state" else f"{self._eye}{name}"
 
     def _show(self, seen: Any, infos: Mapping[str, Any]) -> None:
-        """Keeps what an onlooker saw."""
+        """Keeps the images of the onlooker."""
         name = f"{_ONLOOKER}_rgb"
         if not isinstance(seen, dict) or name not in seen:
             return
@@ -256,7 +259,7 @@ class Homes:
         self.shown = shown
 
     def _timeouts(self, envs: np.ndarray, final: np.ndarray) -> Timeouts:
-        """The last observations of some envs out of Gymnasium's array of objects."""
+        """The last observations of some envs, from Gymnasium's array of objects."""
         rows = [final[env] for env in envs]
         if not isinstance(rows[0], dict):
             return Timeouts(envs, np.stack(rows))
@@ -264,7 +267,7 @@ class Homes:
         return Timeouts(envs, **{n: np.stack([row[self._named(n)] for row in rows]) for n in names})
 
     def _shapes(self) -> dict[str, tuple[int, ...]]:
-        """Of the images of one env that the network sees."""
+        """The shapes of the images that the network sees of one env."""
         shapes = {}
         for drawn in self.env.renderers[:1]:
             eye = drawn.get(_EYE) if isinstance(drawn, dict) else drawn
@@ -272,7 +275,7 @@ class Homes:
         return shapes
 
     def _stage(self, half: int, into: Observation) -> Observation:
-        """Pinned memory that `into` is copied from."""
+        """Pinned memory from which `into` is filled."""
         staged = self._staged[half]
         if staged is None:
             staged = Observation(
@@ -283,7 +286,7 @@ class Homes:
 
 
 def _with_drawing(images: Mapping[str, Any], drawing: Mapping[str, str]) -> dict[str, Any]:
-    """Options of a camera, or of several by their names, with some more of the Renderer."""
+    """The options of one camera, or of several by name, extended with `drawing`."""
     if _ONLOOKER in images:
         return {name: {**camera, **drawing} for name, camera in images.items()}
     return {**images, **drawing}
@@ -292,8 +295,8 @@ def _with_drawing(images: Mapping[str, Any], drawing: Mapping[str, str]) -> dict
 def _drawing_on(
     device: torch.device, made: Callable[..., galactic.VectorEnv]
 ) -> galactic.VectorEnv:
-    """What `made` makes with options of the Renderer: on the device of the networks, which is not the first one
-    in all ranks."""
+    """Calls `made` with Renderer options that draw on the networks' device, which differs between
+    ranks."""
     if device.type != "cuda":
         return made()
     try:
@@ -309,7 +312,7 @@ def _pinned(like: torch.Tensor) -> torch.Tensor:
 
 
 def _landing(envs: int) -> dict[str, np.ndarray]:
-    """Where the results of a half land, but for its observations."""
+    """The arrays for the results of a half, except its observations."""
     return {
         "rewards": np.zeros(envs, np.float32),
         "terminations": np.zeros(envs, np.bool_),
@@ -319,8 +322,8 @@ def _landing(envs: int) -> dict[str, np.ndarray]:
 
 
 def _decides_terminate(terminate: str, options: Mapping[str, Any]) -> bool:
-    """Whether the policy decides it: terminating does nothing when a pick is a success, and when
-    success is judged at each release."""
+    """Whether the policy decides when to terminate. In `auto` it does not if terminating has no
+    effect: where a pick is a success, and where success is judged at each release."""
     if terminate == "auto":
         return options["task"] == "rearrange" and not options["no_terminate"]
     return terminate == "learned"

@@ -1,4 +1,4 @@
-"""The settings of the network: what it sees, and what it is made of."""
+"""The settings of the network: what it sees and how it is built."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from galactic.learning.setting_scopes import (
     OF_WIDTHS,
 )
 
-# All that make the images of training unlike those that policies are judged by.
+# All settings that make training images differ from those by which policies are judged.
 CAMERA_NOISE = galactic.Renderer.NOISE_OPTIONS
 _MOST_NOISE = galactic.Renderer.NOISE_LIMITS
-# Options of galactic.Renderer, and the settings that they are taken from.
+# Options of galactic.Renderer, and the settings that give their values.
 CAMERA = {
     "camera": "camera",
     "fov_degrees": "fov",
@@ -254,7 +254,7 @@ class NetworkSettings:
 
     @property
     def has_own_network(self) -> bool:
-        """Whether the network is a class of the user's."""
+        """Whether the network is a class that the user wrote."""
         return self.network not in SIGHT
 
     @property

@@ -1,4 +1,4 @@
-"""Settings that are known to work, by name, or as another run has them."""
+"""Settings that are known to work, by the name of a preset or from the folder of another run."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ _QUICK = {
     "horizon": 32,
     "epochs": 2,
     "mini_batches": 4,
-    # Two ranks of one machine wait for each other: a run repeats itself, bit for bit.
+    # The two ranks wait for each other, so that a run can be repeated bit for bit.
     "sync_fraction": 1.0,
     "validate_every": 1_000_000,
 }
 
 PRESETS: Mapping[str, Mapping[str, Any]] = {
-    # Table 3 of the paper, which are the defaults.
+    # The defaults are table 3 of the paper.
     "paper": {},
     # Mobile Pick in minutes on two processors: the robot knows the way around walls and furniture
     # (geodesic), and feels that it is stuck (bump).
@@ -41,9 +41,9 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
         "simulation": f"task=pick episode-steps=200 geodesic geodesic-weight=1 {_BUMP}",
         "network": "state",
     },
-    # The same without a map: two planes of a laser scanner in the place of what it knows of the way,
-    # which only its critic knows, and a memory. For a --teacher that the preset `quick` has made;
-    # without one it takes more steps.
+    # The same without a map: the robot has two planes of a laser scanner and a memory, and only its
+    # critic knows the way. Meant for a --teacher trained with the preset `quick`; without a
+    # teacher, training takes more steps.
     "quick-laser": {
         **_QUICK,
         "steps": 4_000_000,
@@ -53,7 +53,7 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
         "recurrent": True,
         "critic_only": "geodesic",
     },
-    # By its head's depth camera instead.
+    # The same with the depth camera in the head instead of the scanner.
     "quick-depth": {
         **_QUICK,
         "steps": 4_000_000,
@@ -65,7 +65,7 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
     },
 }
 
-# Those that are made for a run with a --teacher.
+# The presets that are meant for runs with a --teacher.
 TAUGHT = ("quick-laser", "quick-depth")
 
 
@@ -73,9 +73,9 @@ WORDS = "|".join((*PRESETS, "RUN"))
 
 
 def preset(name: str, **changes: Any) -> Settings:
-    """The settings of a preset, or of the run in the folder that is called so, with changes: see overriding(). What the
-    preset says and these leave no effect is left out. Raises SettingsError for a change without one.
-    """
+    """The settings of the preset `name`, or of the run in the folder `name`, with changes: see
+    overriding(). Settings of the preset that the changes leave without effect return to their
+    defaults. Raises SettingsError for a change that has no effect."""
     chosen = _named(name)
     return Settings.effective({**vars(chosen), **overriding(chosen, changes)}, changes)
 

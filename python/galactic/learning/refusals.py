@@ -1,4 +1,4 @@
-"""What is refused, as sentences: which thing, what was found, what was expected and what to do."""
+"""Errors in sentences: which thing is wrong, what was found, what was expected and what to do."""
 
 from __future__ import annotations
 
@@ -12,46 +12,48 @@ from galactic.errors import Error
 
 
 class SettingsError(ValueError):
-    """An invalid setting: says which, what was found and what was expected."""
+    """An invalid setting. The message says which, what was found and what was expected."""
 
 
 class NetworkError(SettingsError):
-    """A class that is no network, or not the one that a policy learned with: says what was found, what was
-    expected and what to do."""
+    """A class that is not a network, or not the one with which a policy learned. The message says
+    what was found, what was expected and what to do."""
 
 
 class CheckpointError(Exception):
-    """A file that is not a checkpoint of this version: says which, what was found, what to do."""
+    """A file that is not a checkpoint of this version. The message says which, what was found and
+    what to do."""
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """The end of a sentence that refuses `word`: the nearest of what is known, if one is near."""
+    """The end of a message that rejects `word`: it suggests the most similar of the known words, if
+    there is one."""
     near = difflib.get_close_matches(word, known, 1)
     return f"; did you mean {near[0]}?" if near else ""
 
 
 @contextlib.contextmanager
 def refusing(fault: str, remedy: str) -> Iterator[None]:
-    """Around taking over what a file holds: whatever is raised, and torch raises whatever its readers
-    do, becomes a CheckpointError "FAULT: what was found; REMEDY", unless it is a galactic.Error of a disk.
-    """
+    """A context for loading the contents of a file: any exception, and torch's readers raise all
+    kinds, becomes a CheckpointError "FAULT: what was found; REMEDY". A galactic.Error about I/O
+    passes through."""
     try:
         yield
     except (CheckpointError, NetworkError):
         raise
     except Exception as error:
         if isinstance(error, Error) and error.code == ErrorCode.IO:
-            raise  # of a disk, which has nothing to do with what the file holds
-        # Of layers that do not fit, torch has a line each; the first of them tells enough.
+            raise  # an I/O error does not depend on what the file holds
+        # Torch prints a line for each layer that does not fit; the first of them is enough.
         found = " ".join(line.strip() for line in str(error).splitlines()[:2])
         if isinstance(error, Error) and error.code == ErrorCode.UNSUPPORTED:
-            # Of another version: those before it are no better.
+            # The file is of another version, and so would be earlier checkpoints.
             raise CheckpointError(f"{fault}: {found}") from error
         raise CheckpointError(f"{fault}: {found}; {remedy}") from error
 
 
 def require_types(values: dict[str, Any], types: dict[str, Any]) -> None:
-    """Raises ValueError where `values` lacks a name of `types`, or has something of another type."""
+    """Raises ValueError if `values` lacks a name of `types`, or has a value of another type."""
     for name, wanted in types.items():
         if name not in values or not isinstance(values[name], wanted):
             found = repr(values[name]) if name in values else "nothing"

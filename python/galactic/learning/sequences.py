@@ -8,7 +8,7 @@ from torch.nn.utils.rnn import PackedSequence
 
 
 def run_gru(rnn: nn.GRU, inputs: Tensor, hidden: Tensor, starts: Tensor) -> tuple[Tensor, Tensor]:
-    """Runs `rnn` over T steps of n envs whose memory is emptied where an episode starts.
+    """Runs `rnn` over T steps of n envs. The memory of an env is cleared where an episode starts.
 
     inputs [T, n, F], hidden [n, H] from before the first step, starts [T, n] bool. Returns outputs
     [T, n, H] and the memory after the last step, [n, H].
@@ -16,8 +16,8 @@ def run_gru(rnn: nn.GRU, inputs: Tensor, hidden: Tensor, starts: Tensor) -> tupl
     Each stretch between two starts is a sequence of its own. Sorted by length they are one packed
     sequence, so that cuDNN, or one loop in C++, does all of it (Wijmans et al., DD-PPO, do the same).
 
-    Computed in float32, whatever is before and after it: where torch is to compute in bfloat16, it has cuDNN
-    run a GRU in float16 all the same, whose gradients would be too small for it.
+    Computed in float32, whatever the precision of the layers around it: under autocast to bfloat16,
+    torch still lets cuDNN run a GRU in float16, in which small gradients would underflow.
     """
     with torch.autocast(inputs.device.type, enabled=False):
         return _run_gru(rnn, inputs.float(), hidden.float(), starts)

@@ -1,4 +1,5 @@
-"""What a setting is: its default, its range and its text, the values that it can have, and how they are typed."""
+"""What defines a setting: its default, range, explanation and possible values, and how values are
+typed."""
 
 from __future__ import annotations
 
@@ -11,10 +12,10 @@ from typing import Any
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_scopes import Scope
 
-# A number, or a range from which each episode draws its own.
+# A number, or a range from which each episode draws one.
 Drawn = float | tuple[float, float]
 
-# Of a setting without a limit of its own.
+# The limits of settings that define none of their own.
 MOST_WHOLE = 2**53
 MOST_NUMBER = 1e9
 
@@ -23,10 +24,10 @@ def setting(default: Any, group: str, text: str, *, low: float | None = None,
             high: float | None = None, choices: Sequence[str] = (),
             may_change: bool = False, may_be_own: bool = False, may_be_range: bool = False,
             scope: Scope | None = None, is_of_acting: bool = False) -> Any:  # fmt: skip
-    """A field of Settings. `may_change`: a resumed run may have another value. `may_be_own`: beside the
-    choices it can be the name of code of one's own (own_code.named()). `may_be_range`: it is Drawn. `scope`: None: it
-    always has an effect. `is_of_acting`: it has none in a run that imitates demonstrations.
-    """
+    """A field of Settings. `may_change`: a resumed run may change the value. `may_be_own`: besides
+    the choices, the value can name the user's own code (own_code.named()). `may_be_range`: the
+    value is a Drawn. `scope`: when the setting has an effect; None: always. `is_of_acting`: the
+    setting has no effect in a run that imitates demonstrations."""
     if high is None and isinstance(default, (int, float)) and not isinstance(default, bool):
         high = MOST_WHOLE if isinstance(default, int) else MOST_NUMBER
     return dataclasses.field(
@@ -56,7 +57,8 @@ _KINDS = {
 
 
 def _is_a(value: Any, kind: type) -> bool:
-    """Whether a value, which may come from a file, is of a setting's type; a whole number is a number."""
+    """Whether a value, which may come from a file, has a setting's type. A whole number counts as a
+    number."""
     if isinstance(value, bool) or kind in (bool, str):
         return isinstance(value, kind)
     if kind is tuple:
@@ -99,19 +101,19 @@ def _require_range(name: str, value: tuple[Any, ...], low: float, high: float) -
 
 
 def option_name(name: str) -> str:
-    """The command line's name of a setting."""
+    """The name of a setting on the command line."""
     return "--" + name.replace("_", "-")
 
 
 def typed(value: Any) -> Any:
-    """The value of a setting as one types it: three numbers with commas between, a range with a "-", others
-    as they are."""
+    """The value of a setting as one types it: three numbers separated by commas, a range with a "-"
+    between its ends, anything else unchanged."""
     if not isinstance(value, tuple):
         return value
     return ("-" if len(value) == 2 else ",").join(f"{number:.9g}" for number in value)
 
 
 def ends_of(text: str) -> list[str]:
-    """Of a range as one types it, both ends; of anything else, the text: a "-" behind a digit or point
-    stands between them."""
+    """Both ends of a typed range, or else the whole text. A "-" after a digit or a point separates
+    the ends."""
     return re.split(r"(?<=[0-9.])-", text)

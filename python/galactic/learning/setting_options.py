@@ -1,4 +1,4 @@
-"""Settings as options of a command line, and as the tables of docs/learning.md."""
+"""Settings as command-line options, and as the tables of docs/learning.md."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from galactic.learning.simulation_words import latest_words
 
 
 def add_options(parser: argparse.ArgumentParser, names: Collection[str] | None = None) -> None:
-    """One option for each setting, or for those of `names`, without a default: what is not given stays as
-    the preset has it."""
+    """Adds an option for each setting, or for those in `names`. The options have no default: a
+    setting that is not given keeps the preset's value."""
     groups: dict[str, Any] = {}
     for field in dataclasses.fields(Settings):
         if names is not None and field.name not in names:
@@ -42,7 +42,7 @@ def add_options(parser: argparse.ArgumentParser, names: Collection[str] | None =
 
 
 def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The settings that the command line names."""
+    """The settings that the command line gives."""
     prefix = "setting_"
     return {
         name[len(prefix) :]: value
@@ -52,15 +52,15 @@ def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def overriding(before: Settings, given: Mapping[str, Any]) -> dict[str, Any]:
-    """What `given` sets over the settings `before`. Of the options of the simulation, too, it changes
-    those that it names."""
+    """The changes that `given` makes to the settings `before`. Options of the simulation that
+    `given` does not name stay as they are."""
     if "simulation" not in given:
         return dict(given)
     return {**given, "simulation": latest_words(f"{before.simulation} {given['simulation']}")}
 
 
 def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
-    """The settings of a resumed run. Rejects those that would make it another run."""
+    """The settings of a resumed run. Rejects changes that would make it a different run."""
     given = overriding(before, given)
     fields = {field.name: field for field in dataclasses.fields(Settings)}
     for name, value in given.items():
@@ -75,13 +75,13 @@ def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
 
 
 def _shown(value: Any) -> Any:
-    """As typed(), for a sentence."""
+    """Like typed(), but readable within a sentence."""
     return "(nothing)" if value == "" else typed(value)
 
 
 def option_lines(settings: Settings) -> str:
-    """The settings as one types them, an option to a line, in their groups; behind those that are none of the
-    defaults, which are. What is empty is left out."""
+    """The settings as one types them, one option per line, in their groups. A comment after each
+    changed option gives its default. Empty settings are left out."""
     lines: list[str] = []
     group = ""
     for field in dataclasses.fields(Settings):
@@ -113,7 +113,7 @@ def positive_integer(text: str) -> int:
 
 
 def _integer(text: str) -> int:
-    """Also 2e6 and 2_000_000."""
+    """A whole number; accepts 2e6 and 2_000_000, too."""
     if re.fullmatch(r"-?[0-9]+(_[0-9]+)*", text):
         return int(text)
     value = _real(text, "a whole number")
@@ -123,7 +123,7 @@ def _integer(text: str) -> int:
 
 
 def _real(text: str, wanted: str = "a number") -> float:
-    """A finite number, without blanks around it."""
+    """A finite number, without spaces around it."""
     if re.fullmatch(r"[-+0-9._eE]+", text):
         try:
             value = float(text)
@@ -135,7 +135,7 @@ def _real(text: str, wanted: str = "a number") -> float:
 
 
 def _three(text: str) -> tuple[float, ...]:
-    """Numbers with commas between."""
+    """Three numbers separated by commas."""
     wanted = "three numbers with commas between, such as 0.1,0,-0.2"
     parts = text.split(",")
     if len(parts) != 3:
@@ -144,7 +144,7 @@ def _three(text: str) -> tuple[float, ...]:
 
 
 def _drawn(text: str) -> Drawn:
-    """A number, or a range: its ends."""
+    """A number, or the two ends of a range."""
     wanted = "a number, or a range such as 0.1-0.3"
     ends = [_real(end, wanted) for end in ends_of(text)]
     if len(ends) > 2:

@@ -1,4 +1,4 @@
-"""What each setting applies to, and the refusal of one without an effect."""
+"""What each setting applies to, and the check that rejects settings without an effect."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from galactic.learning.refusals import SettingsError
 
 
 class Scope(NamedTuple):
-    """Where a setting has an effect."""
+    """The condition under which a setting has an effect."""
 
     covers: Callable[[Any], bool]
-    """Whether it has one, beside the others of its Settings."""
+    """Whether the setting has an effect, given the whole Settings."""
     words: str
-    """What it applies to, behind "applies only to", why that is not so here, and what to do; with names of other
-    settings in braces, in the place of their values."""
+    """The rest of the message after "applies only to": what the setting applies to, why that is not
+    the case, and what to do. Names of other settings in braces stand for their values."""
 
 
 class IdleSetting(SettingsError):
-    """One that has another value than its default, and no effect. `name`: which."""
+    """A setting that differs from its default but has no effect. `name`: its name."""
 
     def __init__(self, name: str, message: str):
         super().__init__(message)
@@ -62,7 +62,8 @@ OF_PARAMETERS = Scope(
 
 
 def require_effect(field: dataclasses.Field[Any], settings: Any) -> None:
-    """Raises IdleSetting where the setting has another value than its default in these Settings, and no effect."""
+    """Raises IdleSetting if the setting differs from its default in these Settings but has no
+    effect."""
     scope: Scope | None = field.metadata["scope"]
     if scope is None or getattr(settings, field.name) == field.default or scope.covers(settings):
         return

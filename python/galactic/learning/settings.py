@@ -1,5 +1,5 @@
-"""Every setting of a training run: one dataclass, from which command line, checkpoints, reports and
-the tables of docs/learning.md come."""
+"""Every setting of a training run, in one dataclass: the command line, checkpoints, reports and the
+tables of docs/learning.md are derived from it."""
 
 from __future__ import annotations
 
@@ -59,10 +59,10 @@ class _RunSettings:
 
 @dataclass(frozen=True)
 class Settings(NetworkSettings, _RunSettings):
-    """What defines a run. The defaults are those of the preset `paper`: table 3 of the paper, and of
-    Habitat's DD-PPO where the table is silent."""
+    """What defines a run. The defaults are those of the preset `paper`: table 3 of the paper, or
+    Habitat's DD-PPO where the table gives no value."""
 
-    # Behind those of the bases, of which the last one comes first.
+    # These fields follow those of the base classes; the fields of the last base come first.
     learning_rate: float = setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
     learning_rate_end: float = setting(
         0.0, "PPO", "learning rate at the end of the run, linear in between", low=0.0
@@ -266,8 +266,9 @@ class Settings(NetworkSettings, _RunSettings):
             )
 
     def require_pace(self) -> None:
-        """Raises SettingsError where nothing could be measured that paces the learning rate. Not so with
-        each of the others: policies of runs in which nothing was are still played."""
+        """Raises SettingsError if the divergence that paces the learning rate cannot be measured.
+        __post_init__() does not check this, so that policies from such runs can still be loaded and
+        played."""
         if self.target_kl > 0.0 and self.epochs * self.mini_batches == 1:
             raise SettingsError(
                 "--target-kl goes by the divergence before the step of each mini-batch, which is 0 before "
@@ -276,12 +277,12 @@ class Settings(NetworkSettings, _RunSettings):
             )
 
     def without_camera_noise(self) -> Settings:
-        """The same with images as they are."""
+        """The same settings without noise in the images."""
         return dataclasses.replace(self, **{name: 0.0 for name in CAMERA_NOISE})
 
     def without_robot_noise(self) -> Settings:
-        """The same with robots that do what they are asked to and know where they are, unless the world
-        says otherwise."""
+        """The same settings without noise in the robots' motions and measurements, except for noise
+        that the world itself defines."""
         words = latest_words(self.simulation).split()
         kept = [word for word in words if not is_robot_noise(word)]
         return (
@@ -291,13 +292,13 @@ class Settings(NetworkSettings, _RunSettings):
         )
 
     def without_noise(self) -> Settings:
-        """The same without either noise: what policies are judged by."""
+        """The same settings without camera and robot noise, as policies are judged."""
         return self.without_camera_noise().without_robot_noise()
 
     @classmethod
     def effective(cls, values: Mapping[str, Any], given: Collection[str] = ()) -> Settings:
-        """Settings of these values, but for those without an effect, which take their defaults. Raises IdleSetting for
-        one of them that is `given`."""
+        """Settings with these values; those that have no effect take their defaults. Raises
+        IdleSetting if a setting without effect is among `given`."""
         kept = dict(values)
         while True:
             try:
@@ -312,11 +313,11 @@ class Settings(NetworkSettings, _RunSettings):
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Settings:
-        """What to_dict() returned, also as JSON gives it. Names that this version does not know are rejected; a
-        setting that is missing takes its default."""
+        """The inverse of to_dict(), also after a round trip through JSON. Unknown names are
+        rejected; a missing setting takes its default."""
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
         if unknown:
             raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
-        # JSON knows no tuples.
+        # JSON has no tuples.
         known = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
         return cls(**known)

@@ -10,7 +10,8 @@ import galactic
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import ends_of
 
-# What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
+# Arguments of VectorEnv that are not options of the simulation, and options that VectorEnv sets
+# itself.
 CHOSEN_BY_TRAINER = {
     *set(inspect.signature(galactic.VectorEnv).parameters) - {"task"},
     "envs",
@@ -43,7 +44,7 @@ def simulation_keywords(text: str) -> dict[str, Any]:
 
 
 def word_of(name: str, value: Any) -> str:
-    """An option of the simulation as one types it."""
+    """An option of the simulation, as one types it."""
     name = name.replace("_", "-")
     if isinstance(value, bool):
         return name if value else f"{name}=false"
@@ -60,13 +61,14 @@ def _dashed(ends: Sequence[Any]) -> str:
 
 
 def latest_words(words: str) -> str:
-    """Words of Settings.simulation, of each name the last one, where the first one stood."""
+    """Words of Settings.simulation without repetitions: the last word of each name, in the place of
+    the first."""
     return " ".join({simulation_keyword(word): word for word in words.split()}.values())
 
 
 def is_robot_noise(word: str) -> bool:
-    """Whether a word of Settings.simulation makes robots unlike those that policies are judged by; one that
-    switches noise of a world off does not."""
+    """Whether a word of Settings.simulation adds noise to the robots. A word that switches off the
+    noise of a world does not."""
     if simulation_keyword(word) not in galactic.Simulator.NOISE_OPTIONS:
         return False
     try:

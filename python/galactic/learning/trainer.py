@@ -44,42 +44,43 @@ from galactic.learning.user_code.callbacks import VALIDATION as VALIDATED
 from galactic.learning.user_code.own_networks import OwnNetwork
 
 Validation = Callable[[Policy], EpisodeSums]
-"""Runs the episodes for validation that are this rank's, and returns their sums."""
+"""Plays this rank's share of the validation episodes, and returns their sums."""
 
 
 class TrainingError(ArithmeticError):
-    """Training cannot go on: says at which update, what was found, what may help."""
+    """Training cannot go on. The message says at which update, what was found and what may help."""
 
 
 class _Ending(enum.Enum):
-    """Why training ends behind an update."""
+    """Why training ends after an update."""
 
     NONE = 0
-    """It goes on."""
+    """Training goes on."""
     GOAL = 1
-    """All steps that were asked for are done."""
+    """All requested steps are done."""
     CALLBACK = 2
-    """The callback asks for it."""
+    """The callback asked to stop."""
     CUT_OFF = 3
-    """A signal does, and something is left to do."""
+    """A signal asked to stop, and something is left to do."""
 
 
 class _Owed(enum.Enum):
-    """What a signal has put off, for the next part of the run to begin with."""
+    """What a signal has put off; the next part of the run does it first."""
 
     NOTHING = 0
     VALIDATION = 1
     VALIDATION_AND_END = 2
-    """And the end that the callback asked for before it."""
+    """The callback had also asked to end the run."""
 
 
 class Trainer:
-    """A run: all that `python3 -m galactic.train` does after it has read its command line.
+    """A run: everything that `python3 -m galactic.train` does after it has read its command line.
 
-    `folder` None writes nothing. `parts` are names and sizes of the parts of an observation, for those
-    who use the policy. `teacher`: see Teacher, with the file it comes from. `demonstrations`: what it learns
-    from, instead of what it does in `envs`. `network` makes that of the settings, if it is one of the user's. Every
-    rank makes one, and calls the same methods.
+    With `folder` None, nothing is written. `parts` are names and sizes of the parts of an
+    observation, for users of the policy. `teacher`: see Teacher, with the file it comes from.
+    `demonstrations`: what the policy learns from, instead of acting in `envs`. `network` makes the
+    network of the settings, if that is user-defined. Every rank makes a Trainer, and calls the same
+    methods.
     """
 
     def __init__(self, settings: Settings, envs: Environments, group: Group,
@@ -109,7 +110,7 @@ class Trainer:
         self.network = network
         self.policy = new_policy(settings, self.shape, self.parts, network).to(group.device)
         for layer in self.policy.modules():
-            # As pictures lie in memory. Torch refuses it for parameters of some other layers.
+            # The same layout as the pictures. For some other layers, torch rejects it.
             if envs.images and isinstance(layer, torch.nn.Conv2d):
                 layer.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.learner: Learner
@@ -136,11 +137,12 @@ class Trainer:
             is_heard=group.rank == 0,
         )
         self.callback: Callback | None = None
-        """What looks on: the same on all ranks, of which the first one calls it."""
+        """The user's callback. All ranks have one or none; only the first rank calls the user's
+        code."""
         self.steps = 0
         self.updates = 0
         self.best = Score()
-        """Of best.pt."""
+        """The score of best.pt."""
         self.recent = RecentEpisodes(self.names, settings.window, settings.envs * group.size)
         self._interrupted = False
         self._owed = _Owed.NOTHING
@@ -165,7 +167,8 @@ class Trainer:
         return Collector(self.envs, self.policy, options, precision, self.group.device)
 
     def start_from(self, file: pathlib.Path) -> None:
-        """Gives the policy the weights of another run's: see checkpoint.begin_with(). Before begin()."""
+        """Gives the policy the weights of another run's policy: see checkpoint.begin_with(). To be
+        called before begin()."""
         saved = checkpoint.begin_with(
             self.policy, self.settings, self.shape, self.parts, file, self.network
         )
@@ -175,7 +178,7 @@ class Trainer:
                 f"{file} learned with {other.option}={other.learned}, and this run has {other.found}: the same "
                 "numbers mean something else, which it has to learn anew"
             )
-        # Its run may have replaced the file while ranks read it, one after the other.
+        # The other run may have replaced the file between the reads of two ranks.
         self.learner.share_policy()
 
     def begin(self) -> None:
@@ -184,9 +187,10 @@ class Trainer:
         self.clock.start()
 
     def train(self, pause_at: int | None = None) -> bool:
-        """Trains until `settings.steps` are done, or `pause_at` of them, or the callback or a signal asks to
-        stop; validates in all cases but the last, saves in all. A validation that a signal has put off comes first.
-        Returns whether all is done. Raises TrainingError when the loss is not a number."""
+        """Trains until `settings.steps` or `pause_at` steps are done, or until the callback or a
+        signal asks to stop. Then it saves, and validates, unless a signal stopped it. A validation
+        that a signal has put off comes first. Returns whether nothing was cut off. Raises
+        TrainingError if the loss is not a number."""
         steps = self.settings.steps
         goal = steps if pause_at is None else min(pause_at, steps)
         with interrupts.handled(self._interrupt):
@@ -198,13 +202,15 @@ class Trainer:
                 self.reports.add_row(self._row({}))
                 self.reports.write(is_last=True)
             self.reports.progress.close()
-            # Here, too, a signal that comes again is not to end it. It may have been cut off behind its last
-            # checkpoint the time before.
+            # Written within the context, so that a repeated signal does not interrupt it. The
+            # previous part of the run may have been cut off after its last checkpoint, before its
+            # report.
             self._write_report()
         return ending is not _Ending.CUT_OFF
 
     def _make_up(self, goal: int) -> _Ending:
-        """Does what a signal has put off, if there is anything. Returns whether nothing comes after that."""
+        """Does what a signal has put off, if anything. Returns whether and why the run ends after
+        that."""
         owed = self._owed
         if owed is _Owed.NOTHING:
             return self._ending_at(goal)
@@ -217,7 +223,8 @@ class Trainer:
         return ending
 
     def _advance(self, goal: int) -> _Ending:
-        """One update, and what is due behind it: by how many steps are done, and where this is the end."""
+        """One update, and whatever is due after it, by the number of steps done or because the run
+        ends here."""
         before = self.steps
         losses, is_interrupted = self._iterate()
         ending = self._ending_at(goal)
@@ -243,7 +250,7 @@ class Trainer:
         return _Ending.GOAL if self.steps >= goal else _Ending.NONE
 
     def _calls_stop(self, kind: str, row: Callable[[], dict[str, float]]) -> bool:
-        """Lets the callback know where the run is. Returns whether the run is to end, on all ranks."""
+        """Calls the callback. Returns, on all ranks, whether it asks to end the run."""
         if self.callback is None:
             return False
         stop = torch.zeros(1, device=self.group.device)
@@ -262,7 +269,8 @@ class Trainer:
         return self.validation is not None and self.settings.validate_every > 0
 
     def _iterate(self) -> tuple[dict[str, float], bool]:
-        """One rollout and one update. Returns the losses and whether some rank was told to stop."""
+        """One rollout and one update. Returns the losses and whether a signal asked any rank to
+        stop."""
         horizon, update = self.settings.horizon, self.updates
         self.envs.progress = self.steps / self.settings.steps
         rollout = self.source.collect(
@@ -293,12 +301,13 @@ class Trainer:
         return losses, shared["interrupted"] > 0.0
 
     def _is_due(self, every: int, before: int, ending: _Ending) -> bool:
-        """What comes every so many steps, and at the end, after those that followed `before`."""
+        """Whether something that happens every `every` steps, and at the end, is due after the
+        steps since `before`."""
         is_next = every > 0 and self.steps // every > before // every
         return ending is not _Ending.NONE or is_next
 
     def _row(self, losses: dict[str, float]) -> dict[str, float]:
-        """What a row of the curves has."""
+        """The values of a row of the curves."""
         return {
             "steps": self.steps,
             "seconds": self.clock.seconds,
@@ -319,7 +328,7 @@ class Trainer:
         )
 
     def _validate(self, ending: _Ending) -> _Ending:
-        """Returns `ending`, or that the callback ends the run here."""
+        """Validates the policy. Returns `ending`, or CALLBACK if the callback ends the run here."""
         assert self.validation is not None
         with self.stopwatch.time("validation"):
             sums = self.validation(self.policy).by_name(self.names)
@@ -330,8 +339,8 @@ class Trainer:
         return _Ending.CALLBACK if self._calls_stop(VALIDATED, lambda: row) else ending
 
     def _keep_if_best(self, means: Mapping[str, float]) -> None:
-        """Writes best.pt, for a policy whose episodes had these means, when none was better; equal ones replace it,
-        being trained longer."""
+        """Writes best.pt if no earlier policy was better than this one, whose episodes had these
+        means. An equal one replaces the earlier, since it was trained longer."""
         score = Score(means.get("success"), means.get("return"))
         if score.is_below(self.best):
             return
@@ -341,8 +350,8 @@ class Trainer:
                 checkpoint.save_policy(self._saved_policy(score), self.folder / BEST)
 
     def save(self) -> None:
-        """Writes a checkpoint; all ranks call it after the same update. Raises on all ranks what keeps one of them from
-        it: Error or OSError, as where the disk is full."""
+        """Writes a checkpoint; all ranks call this after the same update. If one of them fails, all
+        raise its Error or OSError, such as for a full disk."""
         if self.validation is None:
             self._keep_if_best(self.recent.figures())
         if self.checkpoints is None:
@@ -351,7 +360,7 @@ class Trainer:
             try:
                 self._write_checkpoint(self.checkpoints)
             except BaseException:
-                # Also Ctrl-C, which comes to all ranks.
+                # This includes Ctrl-C, which reaches all ranks.
                 if self.group.rank == 0:
                     self.checkpoints.give_up(self.steps)
                 raise
@@ -367,19 +376,19 @@ class Trainer:
                 checkpoints.finish(self.steps)
 
     def _write_into(self, folder: pathlib.Path) -> None:
-        """This rank's files of a checkpoint."""
+        """Writes this rank's files of a checkpoint."""
         checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.source.state_dict())
         if self.group.rank == 0:
             checkpoint.save_policy(self._saved_policy(), folder / POLICY)
             optimizer = {"optimizer": self.learner.optimizer.state_dict()}
-            # Those that it counts are there before it is.
+            # The rows that the file counts must be on the disk before it is.
             rows = self.reports.curves.keep()
             checkpoint.save(folder / "trainer.pt", self._state(rows).to_values(), optimizer)
 
     def resume(self) -> None:
-        """Takes up the latest checkpoint: what follows is what would have followed, on a processor
-        bit for bit. Raises on all ranks what one of them finds wrong: CheckpointError, or Error where a
-        file is missing."""
+        """Loads the latest checkpoint. The run goes on as it would have without the interruption,
+        on a processor bit for bit. If one rank finds something wrong, all raise its error:
+        CheckpointError, or Error if a file is missing."""
         assert self.checkpoints is not None
         with self.group.together():
             self._take_up(self.checkpoints.latest(), self.checkpoints.without_latest)
@@ -406,7 +415,8 @@ class Trainer:
         self.reports.begin_at(self.steps)
 
     def _take_up_best(self) -> None:
-        """The best.pt that is there may be of after the checkpoint: a worse one is not to take its place."""
+        """Reads the score of the existing best.pt, which may be newer than the checkpoint, so that
+        no worse policy replaces it."""
         assert self.folder is not None
         file = self.folder / BEST
         if file.exists():
@@ -488,8 +498,10 @@ class Trainer:
         )
 
     def _interrupt(self, number: int) -> None:
-        """Ctrl-C comes as often as it is typed: launch() keeps ranks out of the group of the terminal. What ends a
-        job sends one SIGTERM to all of its processes, and those that have ranks pass theirs on."""
+        """Handles SIGINT and SIGTERM. Each Ctrl-C arrives exactly once, as launch() keeps ranks out
+        of the terminal's process group; the second one stops at once. SIGTERM can arrive twice: job
+        schedulers send it to all processes, and launch() passes its own on. So a repeated SIGTERM
+        is ignored."""
         if self._interrupted and number == signal.SIGINT:
             raise KeyboardInterrupt
         if not self._interrupted:
@@ -498,5 +510,5 @@ class Trainer:
 
 
 def _fitting(file: pathlib.Path, remedy: str) -> AbstractContextManager[None]:
-    """Around taking over what `file` holds."""
+    """A context for loading the contents of `file`."""
     return refusing(f"{file} does not fit this run", remedy)

@@ -1,8 +1,9 @@
 """The distribution of an action: Gaussian motions and two yes-or-no decisions.
 
-An action is a row of `motions + 2` numbers: the changes of the joints, forward, turn and, where the base
-does, sideways, which are continuous in [-1, 1], then hand and terminate, each 0 or 1 (paper, appendix A). torch.distributions
-would do the same at several times the cost: it checks its arguments and wraps every call.
+An action is a row of `motions + 2` numbers: first the motions, continuous in [-1, 1], which are the
+changes of the joints, forward, turn and, for bases that can, sideways; then hand and terminate,
+each 0 or 1 (paper, appendix A). torch.distributions would do the same at several times the cost, as
+it checks its arguments and wraps every call.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ class ActionDistribution(NamedTuple):
     decides_terminate: bool
 
     def sample(self, noise: Tensor) -> Tensor:
-        """An action for each row of `noise` [..., motions + 2]: normal numbers, then uniform ones."""
+        """An action for each row of `noise` [..., motions + 2]: normally distributed numbers, then
+        uniform ones."""
         motions = self.mean.shape[-1]
         moved = self.mean + self.log_std.exp() * noise[..., :motions]
         decided = noise[..., motions:] < torch.sigmoid(self.logits)
@@ -51,7 +53,7 @@ class ActionDistribution(NamedTuple):
         motions = self.mean.shape[-1]
         distance = (action[..., :motions] - self.mean) * torch.exp(-self.log_std)
         density = (-0.5 * distance * distance - self.log_std).sum(-1) - motions * _HALF_LOG_TAU
-        # log sigmoid(x) for a yes, log sigmoid(-x) for a no.
+        # log sigmoid(x) for yes, log sigmoid(-x) for no.
         decided = action[..., motions:]
         choice = functional.logsigmoid(self.logits * (2.0 * decided - 1.0))
         return density + self._of_decisions(choice)
@@ -64,8 +66,9 @@ class ActionDistribution(NamedTuple):
         return gaussian + self._of_decisions(odds)
 
     def divergence(self, other: ActionDistribution) -> Tensor:
-        """Kullback-Leibler divergence of `other` from this distribution, of what both decide; shape
-        [...]. No gradient reaches the noise of `other`: it follows the means and the odds alone."""
+        """Kullback-Leibler divergence of `other` from this distribution, over the decisions that
+        both make; shape [...]. No gradient reaches the standard deviations of `other`, only its
+        means and odds."""
         noise = other.log_std.detach()
         apart = (self.mean - other.mean).square() + torch.exp(2.0 * self.log_std)
         motions = noise - self.log_std + 0.5 * (apart * torch.exp(-2.0 * noise) - 1.0)
@@ -75,7 +78,7 @@ class ActionDistribution(NamedTuple):
         return motions.sum(-1) + fewer._of_decisions(decisions)
 
     def of(self, envs: Tensor) -> ActionDistribution:
-        """That of some envs, of a batch [T, n, ...]."""
+        """The distribution for some envs of a batch [T, n, ...]."""
         return self._replace(
             mean=self.mean[:, envs], log_std=self.log_std[:, envs], logits=self.logits[:, envs]
         )

@@ -1,4 +1,4 @@
-"""Whether a policy can act by what is observed elsewhere than in its own training."""
+"""Checks whether a policy can act on observations from elsewhere than its own training."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from galactic.learning.saving.checkpoint import SavedPolicy
 
 
 class Observed(NamedTuple):
-    """What is observed: names and sizes of the parts, what their numbers mean (sensors.meaning_of()),
-    and how many motions there are."""
+    """What a run observes and controls: names and sizes of the parts, what their numbers mean
+    (sensors.meaning_of()), and the number of motions."""
 
     parts: Sequence[tuple[str, int]]
     meanings: Mapping[str, Any]
@@ -27,9 +27,10 @@ class Observed(NamedTuple):
 
 def columns_of(saved: SavedPolicy, file: pathlib.Path, observed: Observed, remedy: str,
                hiding: str = "") -> list[int]:  # fmt: skip
-    """Where the numbers that a policy sees are in a row of what is observed, which may have more. `file`:
-    where it was saved, `remedy` what to do, and `hiding` how to keep more from others, for messages. Raises
-    CheckpointError where something is missing, or means something else."""
+    """The columns of an observed row that a policy reads; the row may have more. For messages:
+    `file`, from which the policy was read, `remedy`, what to do, and `hiding`, how to keep an added
+    sensor from the learner. Raises CheckpointError if something is missing or has a different
+    meaning."""
     if saved.shape.motions != observed.motions:
         raise CheckpointError(
             f"{file} decides {saved.shape.motions} motions, found {observed.motions} in this run; "
@@ -66,6 +67,7 @@ def columns_of(saved: SavedPolicy, file: pathlib.Path, observed: Observed, remed
 
 
 def other_meaning_of(saved: SavedPolicy, found: Mapping[str, Any]) -> OtherMeaning | None:
-    """Where what the policy acts by means something else than in its training; None where it does not."""
+    """The first option that changes the meaning of what the policy sees since its training; None if
+    there is none."""
     seen = [name for name, _ in parts_of_actor(saved.settings.critic_only, saved.parts)]
     return other_meaning(seen, saved.meanings, found)

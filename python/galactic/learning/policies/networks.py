@@ -1,5 +1,5 @@
-"""The policies: the paper's three networks, two for processors, `state` without a camera and
-`depth` with one, and those around an encoder of one's own.
+"""The policies: the paper's three networks; two for processors, `state` without a camera and
+`depth` with one; and those around a user-defined encoder.
 
 Every policy is the same plain chain, kept in these attributes so that an exporter can walk it:
 
@@ -13,9 +13,9 @@ Every policy is the same plain chain, kept in these attributes so that an export
     critic      FullLinear: the value
 
 A policy without `rnn` (class FeedForwardPolicy) has two encoders, `encoder` for the actor and
-`value_encoder` for the critic, which share nothing but what is before them. One with `rnn` has a
-`value_encoder` behind it where the critic sees more than the actor, and so has an EncoderPolicy, whose
-memory, if there is one, is the encoder's.
+`value_encoder` for the critic, which share only the modules before them. A policy with `rnn` has a
+`value_encoder` after it if the critic sees more than the actor. So does an EncoderPolicy, whose
+memory, if any, is in the encoder.
 
 Rows of `action.linear`: a mean for each motion (before tanh), a log-std for each, then two logits (no,
 yes) each for hand and terminate.
@@ -52,7 +52,7 @@ from galactic.learning.sequences import run_gru
 
 
 class Outputs(NamedTuple):
-    """What it makes of that."""
+    """What a policy computes from its Inputs."""
 
     actions: ActionDistribution  # of shape [T, n]
     values: Tensor  # [T, n]
@@ -60,7 +60,7 @@ class Outputs(NamedTuple):
 
 
 class PolicyShape(NamedTuple):
-    """Sizes that the world gives, and the choices that are common to all policies."""
+    """Sizes that depend on the world, and the choices that all policies share."""
 
     state: int  # numbers in a row of observations
     motions: int  # continuous actions
@@ -72,30 +72,30 @@ class PolicyShape(NamedTuple):
 
     @property
     def closeups(self) -> tuple[float, ...]:
-        """The scales that there are."""
+        """The scales that are in use."""
         return tuple(scale for scale in (self.closeup, self.second_closeup) if scale > 0.0)
 
     @property
     def seen(self) -> int:
-        """Numbers that the critic reads of the state."""
+        """How many numbers the critic reads of the state, including closeups."""
         return self.state * (1 + len(self.closeups))
 
     @property
     def apart(self) -> int:
-        """How many of them it alone reads."""
+        """How many of these only the critic reads."""
         return len(self.critic_only) * (1 + len(self.closeups))
 
 
 class Blinkers(nn.Module):
-    """Rows [..., S + F] of the state, as Policy sees it, and of `features` F -> what the actor sees of
-    them (Pinto et al. 2018, asymmetric actor-critic)."""
+    """Rows [..., S + F], the state as Policy sees it and F = `features` -> the columns that the
+    actor sees (Pinto et al. 2018, asymmetric actor-critic)."""
 
     def __init__(self, shape: PolicyShape, features: int):
         super().__init__()
         firsts = range(0, shape.seen, shape.state)
         apart = [first + column for first in firsts for column in shape.critic_only]
         ahead = sorted(set(range(shape.seen + features)) - set(apart))
-        # No parameters: checkpoints know them by the shape.
+        # Not persistent: they follow from the shape, which checkpoints hold.
         self.register_buffer("ahead", torch.tensor(ahead), persistent=False)
         self.register_buffer("aside", torch.tensor(apart), persistent=False)
 
@@ -106,16 +106,17 @@ class Blinkers(nn.Module):
         return seen.index_select(-1, self.ahead)
 
     def hidden(self, seen: Tensor) -> Tensor:
-        """What the critic alone sees."""
+        """The columns that only the critic sees."""
         return seen.index_select(-1, self.aside)
 
 
 class ActorHead(nn.Module):
-    """Features [..., F] -> ActionDistribution. One linear layer, so one multiplication.
+    """Features [..., F] -> ActionDistribution. A single linear layer, hence a single matrix
+    multiplication.
 
     `initial_log_std` None: log-stds are outputs of the layer, clamped to [-5, 2] (paper); a number:
-    they are parameters that do not depend on the state, and start there. `odds_limit`: what the
-    log-odds of a decision stay below, and above the negative of; 0: they have no limit.
+    they are parameters that do not depend on the state, with this initial value. `odds_limit`: the
+    log-odds of a decision stay between -`odds_limit` and `odds_limit`; 0: no limit.
     """
 
     def __init__(self, features: int, shape: PolicyShape, initial_log_std: float | None = None,
@@ -146,7 +147,8 @@ class ActorHead(nn.Module):
         return ActionDistribution(mean, log_std, odds, self.decides_terminate)
 
     def limit_log_std(self, highest: float = HIGHEST_LOG_STD) -> None:
-        """Clamps log-stds that are parameters: beyond where forward() does, no gradient would lead back."""
+        """Clamps log-stds that are parameters: outside the range to which forward() clamps them, no
+        gradient would lead back."""
         if self.log_std is not None:
             with torch.no_grad():
                 self.log_std.clamp_(LOWEST_LOG_STD, highest)
@@ -162,10 +164,10 @@ class Policy(nn.Module):
     """What the trainer asks of a policy."""
 
     hidden_size = 0
-    """Numbers of memory for each env; 0 without."""
+    """Size of the memory of each env; 0: no memory."""
     needs_previous = False
     values_apart = False
-    """Whether value() costs less than forward(): values can then wait until the rollout is over."""
+    """Whether value() costs less than forward(): then values are computed after the rollout."""
 
     action: ActorHead
 
@@ -178,12 +180,13 @@ class Policy(nn.Module):
         self.blinkers = Blinkers(shape, features) if shape.critic_only else None
 
     def forward(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
-        """`hidden` [n, H] from before the first step; `starts` [T, n] bool: where an episode begins,
-        and the memory is empty."""
+        """`hidden` [n, H] is the memory before the first step; `starts` [T, n] bool marks where an
+        episode begins and the memory is cleared."""
         raise NotImplementedError
 
     def act(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
-        """forward(), for rollouts: `values` are anything when `values_apart`."""
+        """forward() for rollouts: with `values_apart`, `values` are not computed, and must not be
+        used."""
         return self(inputs, hidden, starts)
 
     def value(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Tensor:
@@ -195,7 +198,7 @@ class Policy(nn.Module):
         return torch.zeros(envs, self.hidden_size, device=device) if self.hidden_size else None
 
     def _seen(self, inputs: Inputs) -> Tensor:
-        """The state, and what the eyes see, as the critic reads them."""
+        """The state and the output of the eyes, as the critic reads them."""
         state = inputs.state
         parts = [state if self.normalize is None else self.normalize(state)]
         if self.closeup is not None:
@@ -205,18 +208,19 @@ class Policy(nn.Module):
         return parts[0] if len(parts) == 1 else torch.cat(parts, -1)
 
     def _by_actor(self, seen: Tensor) -> Tensor:
-        """The same, as the actor reads them."""
+        """The same as the actor reads it."""
         return seen if self.blinkers is None else self.blinkers(seen)
 
     def _judged(self, features: Tensor, seen: Tensor, join: nn.Module | None) -> Tensor:
-        """The features as the critic reads them, joined with what it alone sees."""
+        """The features as the critic reads them, joined with what only the critic sees."""
         if self.blinkers is None or join is None:
             return features
         return join(torch.cat([features, self.blinkers.hidden(seen)], -1))
 
 
 class FeedForwardPolicy(Policy):
-    """Two perceptrons side by side, actor and critic, behind the same eyes or none: no memory."""
+    """Two separate perceptrons, actor and critic, without memory; they share their eyes, if there
+    are any."""
 
     def __init__(self, shape: PolicyShape, width: int, layers: int, activation: str,
                  initial_log_std: float | None, odds_limit: float,
@@ -245,8 +249,8 @@ class FeedForwardPolicy(Policy):
 
 
 class RecurrentPolicy(Policy):
-    """An encoder, a GRU, and heads for actor and critic on it; the critic's behind a layer that joins
-    what it alone sees."""
+    """An encoder, a GRU, and heads for actor and critic. If the critic sees more than the actor, a
+    layer before its head joins that with the features."""
 
     def __init__(self, encoder: Encoder, shape: PolicyShape, width: int,
                  initial_log_std: float | None, odds_limit: float,
@@ -277,8 +281,8 @@ class RecurrentPolicy(Policy):
 
 
 class EncoderPolicy(Policy):
-    """An encoder, which has a memory of its own or none, and heads for actor and critic on it; the critic's
-    behind a layer that joins what it alone sees."""
+    """An encoder, with or without a memory of its own, and heads for actor and critic. If the
+    critic sees more than the actor, a layer before its head joins that with the features."""
 
     def __init__(self, encoder: Encoder, shape: PolicyShape, initial_log_std: float | None,
                  odds_limit: float):  # fmt: skip
@@ -309,12 +313,12 @@ def make_policy(network: str, shape: PolicyShape, *, image_size: int = IMAGE_SIZ
                 recurrent: bool = False, width: int = 128, layers: int = 2,
                 activation: str = "tanh", initial_log_std: float | None = None,
                 odds_limit: float = 0.0, own: Encoder | None = None) -> Policy:  # fmt: skip
-    """A policy by its name, one of SIGHT, or around an encoder of one's `own`, with an ActorHead of
-    `odds_limit`.
+    """Makes the policy of this name, one of SIGHT, or one around the user-defined encoder `own`.
 
-    `image_size`, `recurrent`, `width`, `layers`, `activation` and `initial_log_std` are for `state`
-    and `depth` alone: the paper's networks are what they are. Around that encoder, `recurrent` puts a GRU of
-    `width` behind it. Weights come from torch's global random stream.
+    `image_size`, `recurrent`, `width`, `layers`, `activation` and `initial_log_std` apply to
+    `state` and `depth`; the paper's networks are fixed. With `own`, `recurrent` puts a GRU of
+    `width` behind the encoder, and `initial_log_std` applies, too. Weights come from torch's global
+    random stream.
     """
     if own is not None:
         if recurrent:

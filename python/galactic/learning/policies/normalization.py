@@ -1,4 +1,4 @@
-"""What a policy makes of its observations before any layer sees them."""
+"""What a policy does to its observations before the first layer."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _EPSILON = 1e-5
 class Normalizer(nn.Module):
     """(x - mean) / sqrt(variance + 1e-5), clamped to [-10, 10]; element by element.
 
-    Mean and variance are buffers: saved with the policy, and changed by absorb() alone, which the
-    trainer calls after each update. Until then, and in evaluations, they stand still, so that the
-    policy that is trained is the one that acted.
+    Mean and variance are buffers: they are saved with the policy, and only absorb() changes them,
+    which the trainer calls after each update. In between, and in evaluations, they are constant, so
+    that the policy that is trained is the one that acted.
     """
 
     mean: Tensor
@@ -30,7 +30,7 @@ class Normalizer(nn.Module):
         super().__init__()
         self.register_buffer("mean", torch.zeros(size))
         self.register_buffer("scale", torch.ones(size))
-        # Exact enough to add up billions of steps.
+        # Double precision, to add up billions of steps.
         self.register_buffer("count", torch.zeros((), dtype=torch.float64))
         self.register_buffer("center", torch.zeros(size, dtype=torch.float64))
         self.register_buffer("square", torch.zeros(size, dtype=torch.float64))
@@ -42,14 +42,15 @@ class Normalizer(nn.Module):
     def sums(batch: Tensor, center: Tensor) -> Tensor:
         """Count, sums and sums of squares about `center` of rows [..., S]; float64 [1 + 2 S].
 
-        Sums of several ranks may be added, when they share the center.
+        The sums of several ranks may be added if they are about the same center.
         """
         rows = batch.reshape(-1, batch.shape[-1]).double() - center
         count = torch.full((1,), float(len(rows)), dtype=torch.float64, device=rows.device)
         return torch.cat([count, rows.sum(0), (rows * rows).sum(0)])
 
     def absorb(self, sums: Tensor) -> None:
-        """Takes in what sums() found about `self.center` (Chan, Golub, LeVeque 1979)."""
+        """Updates mean and variance with the result of sums() about `self.center` (Chan, Golub,
+        LeVeque 1979)."""
         size = self.mean.numel()
         count, first, second = sums[0], sums[1 : 1 + size], sums[1 + size :]
         total = self.count + count
@@ -63,13 +64,13 @@ class Normalizer(nn.Module):
 
 
 class Closeup(nn.Module):
-    """tanh(x / scale), element by element: what is near zero, seen through a magnifying glass, or
-    through several, one row after the other.
+    """tanh(x / scale), element by element, for each of the scales, whose rows are concatenated: it
+    magnifies values near zero.
 
-    Normalized by their variance, meters to a target that may be anywhere in a home leave five
-    centimeters of reach within a hundredth of a unit, and a network needs millions of steps to
-    learn weights that tell them apart. Beside the normalized row, this one saturates far away and
-    is linear where hands meet objects.
+    A target may be anywhere in a home. Normalized by the variance of its distance, the last five
+    centimeters of reach shrink to a hundredth of a unit, and a network needs millions of steps to
+    learn weights large enough to resolve them. This row complements the normalized one: it
+    saturates far away and is linear where hands meet objects.
     """
 
     def __init__(self, scales: Sequence[float]):

@@ -1,4 +1,4 @@
-"""Modules without their numbers, for those who will fill them with what a file holds."""
+"""Modules without memory for their tensors, to be filled from a file later."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _MAKERS = (torch.empty, torch.full, torch.ones, torch.zeros)
 
 
 class Outlined(TorchFunctionMode):
-    """While in force, modules are made of tensors that have shapes and no memory (torch's device `meta`), whatever
-    their size: nothing is initialized, and no random number is drawn. Tensors that are made of numbers are
-    what they always are. Torch 2 has a context for its devices; 1.13 has none."""
+    """Within this context, modules get tensors that have shapes but no memory (torch's device
+    `meta`): nothing is initialized, and no random numbers are drawn. Tensors made from given
+    numbers are not affected. Torch 2 has such a context for devices; torch 1.13 has not."""
 
     def __torch_function__(
         self,
@@ -31,5 +31,5 @@ class Outlined(TorchFunctionMode):
 
 
 def give_memory(module: nn.Module) -> None:
-    """Gives outlined tensors of a module memory on the processor, which is not initialized."""
+    """Gives the outlined tensors of a module uninitialized memory on the processor."""
     module._apply(lambda one: torch.empty_like(one, device="cpu") if one.is_meta else one)

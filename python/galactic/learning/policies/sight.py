@@ -11,19 +11,19 @@ SIGHT: Mapping[str, tuple[str, ...]] = {
     "resnet9": ("rgb", "depth"),
     "resnet18": ("rgb", "depth"),
 }
-"""The networks, and what each of them sees."""
+"""The built-in networks, and the images that each of them sees."""
 OWN_SIGHT: Mapping[str, tuple[str, ...]] = {
     "none": (),
     "depth": ("depth",),
     "rgb": ("rgb",),
     "rgbd": ("rgb", "depth"),
 }
-"""What a network of one's own can see."""
+"""The images that a user-defined network can see."""
 OF_THE_PAPER = ("simple_cnn", "resnet9", "resnet18")
-"""Those whose layers nobody chooses."""
+"""The networks whose layers are fixed."""
 IMAGE_SIZE = 128
-"""Height and width that the paper's networks are made for, pixels."""
+"""The image height and width for which the paper's networks are made, pixels."""
 SMALLEST_IMAGE = 36
-"""The least that `depth` can see with, pixels."""
+"""The smallest image that the network `depth` accepts, pixels."""
 FARTHEST = 10.0
-"""Depth that counts as far away, meters."""
+"""Greater depths are clamped to this, meters."""

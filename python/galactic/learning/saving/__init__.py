@@ -1,1 +1,1 @@
-"""What is saved of runs and policies, and how it is read again. Start reading at `checkpoint.py`."""
+"""Saving and loading runs and policies. Start reading at `checkpoint.py`."""

@@ -1,8 +1,9 @@
 """Files that hold policies and the state of a run, which appear whole or not at all.
 
-A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their names,
-and under "values" a JSON text with all else (torch 1.13 reads no plain floats that way), first of all
-"format", a number: files of another one than FORMAT are refused. In policy.pt:
+A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their
+names, and everything else as JSON text under "values" (in that mode, torch 1.13 reads no plain
+floats). The number "format" comes first; files whose format is not FORMAT are rejected. A policy.pt
+holds:
 
     policy      the network's state_dict
     values      settings  Settings.to_dict()
@@ -50,18 +51,19 @@ from galactic.learning.user_code.own_code import place_beside
 from galactic.learning.user_code.own_networks import OwnNetwork, own_network, seen_by, with_options
 
 FORMAT = 1
-"""Of all files that save() writes, and the only one that load() reads: another one where names or meanings change."""
-# What every pack begins with: docs/packs.md.
+"""The format of all files that save() writes, and the only one that load() reads. It changes if
+names or meanings do."""
+# The first bytes of every pack: docs/packs.md.
 _PACK = b"GALAPACK"
 _ANOTHER_POLICY = "take best.pt or a policy.pt of a run"
 
 
 @dataclass
 class SavedPolicy:
-    """A policy as it was saved. `parts`: names and sizes of the parts of its observations. `success`, `mean_return`:
-    of the episodes by which it was judged; None: it was not. `meanings`: what the numbers of its observations mean
-    (sensors.meaning_of()), as far as that is known. `network`: what has made its network, if that is one of the
-    user's."""
+    """A policy as it was saved. `parts`: names and sizes of the parts of its observations.
+    `success`, `mean_return`: of the episodes by which it was judged; None if it was not judged.
+    `meanings`: what the numbers of its observations mean (sensors.meaning_of()), as far as that is
+    known. `network`: what made its network, if that is user-defined."""
 
     policy: Policy
     settings: Settings
@@ -75,14 +77,14 @@ class SavedPolicy:
 
 
 class Score(NamedTuple):
-    """How well a policy did in some episodes: what is not known is None."""
+    """How well a policy did in some episodes; None for what is unknown."""
 
     success: float | None = None
     mean_return: float | None = None
 
     def is_below(self, other: Score) -> bool:
-        """Whether it had fewer successes, or as many and a smaller return, by which tasks without successes are judged.
-        What is not known is below all that is."""
+        """Whether this score has fewer successes, or as many successes and a smaller return: the
+        return decides in tasks without successes. An unknown value is below every known one."""
         ours, theirs = (
             [-math.inf if one is None else one for one in score] for score in (self, other)
         )
@@ -91,8 +93,9 @@ class Score(NamedTuple):
 
 def new_policy(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]] = (),
                network: OwnNetwork | None = None) -> Policy:  # fmt: skip
-    """The policy that the settings describe, with weights from torch's global random stream. `network` makes
-    one of the user's, which is told where the `parts` of an observation are."""
+    """The policy that the settings describe, with weights from torch's global random stream.
+    `network` makes a user-defined network, which is told where the `parts` of an observation
+    are."""
     return _policy_around(_own_encoder(settings, shape, parts, network), settings, shape)
 
 
@@ -126,7 +129,7 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
         "shape": saved.shape._asdict(),
         "parts": [list(part) for part in saved.parts],
         "meanings": dict(saved.meanings),
-        # A module's versions are its own affair.
+        # No digest for a module: its author is responsible for its versions.
         "network_digest": saved.network.digest if saved.network and saved.network.code.file else "",
         "steps": saved.steps,
         "success": saved.success,
@@ -138,8 +141,8 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
 def load_policy(file: pathlib.Path, remedy: str = "", network: OwnNetwork | None = None,
                 without: str = "") -> SavedPolicy:  # fmt: skip
     """Reads a policy.pt or best.pt; the policy is on the processor, ready to act. `remedy` is as in
-    load(). `network` makes the network where it is one of the user's, as no file runs code by itself;
-    `without` is what to do where nobody has named it."""
+    load(). `network` makes a user-defined network: the user must name it, as no file runs code by
+    itself. `without` says what to do if it was not named."""
     values, tensors = load(file, remedy)
     remedy = remedy or _ANOTHER_POLICY
     if "policy" not in tensors:
@@ -155,7 +158,7 @@ def load_policy(file: pathlib.Path, remedy: str = "", network: OwnNetwork | None
 
 
 def read_score(file: pathlib.Path, remedy: str) -> Score:
-    """By what the policy of a policy.pt or best.pt was judged. `remedy` is as in load()."""
+    """The score of the policy in a policy.pt or best.pt. `remedy` is as in load()."""
     values, _ = load(file, remedy)
     with refusing(f"{file} is not a policy of this version", remedy):
         require_types(values, _SCORE)
@@ -163,12 +166,13 @@ def read_score(file: pathlib.Path, remedy: str) -> Score:
 
 
 def read_policy(path: str | pathlib.Path, network: str | None = None) -> SavedPolicy:
-    """Reads best.pt or policy.pt of a run of galactic.train; `policy` of what it returns is a torch module, on the
-    processor, ready to act.
+    """Reads the best.pt or a policy.pt of a run of galactic.train. The `policy` of the result is a
+    torch module, on the processor, ready to act.
 
-    `network`, FILE.py:CLASS or MODULE:CLASS, is the class of a network of one's own, as --network names it: no file
-    runs code by itself. Raises CheckpointError for a file that is no policy, SettingsError where `network` is missing
-    or of no use, and galactic.Error where the file cannot be read.
+    `network`, FILE.py:CLASS or MODULE:CLASS, is the class of a user-defined network, as in
+    --network: no file runs code by itself. Raises CheckpointError if the file is not a policy,
+    SettingsError if `network` is missing or not needed, and galactic.Error if the file cannot be
+    read.
     """
     file, named = pathlib.Path(path), own_network(network) if network is not None else None
     saved = load_policy(file, network=named)
@@ -181,8 +185,8 @@ def read_policy(path: str | pathlib.Path, network: str | None = None) -> SavedPo
 
 def _same_network(file: pathlib.Path, settings: Settings, digest: str,
                   network: OwnNetwork | None, without: str) -> OwnNetwork:  # fmt: skip
-    """The network that was named for a policy, if it is the one that the policy learned with, made with the
-    same options."""
+    """The network named for a policy, with the options of its training. Raises NetworkError if it
+    is not the one with which the policy learned."""
     place = place_beside(file, "--network", settings.network)
     trusted = f"if you trust it, add --network {shlex.quote(place)}"
     learned = f"{file} was trained with a network of its own, {settings.network!r}"
@@ -198,7 +202,7 @@ def _same_network(file: pathlib.Path, settings: Settings, digest: str,
     return with_options(network, settings.network_options)
 
 
-# Of what is in a policy.pt, and of its shape: types that JSON gives them.
+# The JSON types of the values in a policy.pt, and of its shape.
 _SCORE = {"success": (float, int, type(None)), "return": (float, int, type(None))}
 _POLICY: dict[str, Any] = {
     "settings": dict,
@@ -221,7 +225,7 @@ _SHAPE = {
 
 
 MOST_NUMBERS = 1 << 20
-"""Of an observation of a policy that is read."""
+"""Limit of the sizes in the shape of a policy that is read."""
 
 
 def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings,
@@ -235,10 +239,12 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings
     shape = PolicyShape(**sizes)
     parts = [(str(name), int(size)) for name, size in values["parts"]]
     _require_columns(settings, shape, parts)
-    # A class of the user's makes random numbers, which are not what was asked for.
+    # The user's class may draw random numbers; loading a policy must not advance the caller's
+    # stream.
     with torch.random.fork_rng(devices=[]):
         encoder = _own_encoder(settings, shape, parts, network)
-    # What the settings of a stranger's file describe may be of any size.
+    # The settings in a stranger's file may describe a network of any size, so no memory is
+    # allocated yet.
     with Outlined():
         policy = _policy_around(encoder, settings, shape)
     wanted = policy.state_dict()
@@ -262,9 +268,9 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings
 
 
 def _require_columns(settings: Settings, shape: PolicyShape, parts: list[tuple[str, int]]) -> None:
-    """Raises ValueError where the shape has other columns for the critic alone than the settings."""
+    """Raises ValueError if the critic-only columns of the shape are not those of the settings."""
     names = names_of(settings.critic_only)
-    # Sizes are a stranger's: nothing is listed that the shape has not.
+    # The sizes come from a stranger's file, so compare the counts before listing columns.
     count = sum(max(size, 0) for name, size in parts if name in names)
     found = shape.critic_only
     if count != len(found) or critic_columns(settings.critic_only, parts) != found:
@@ -273,8 +279,8 @@ def _require_columns(settings: Settings, shape: PolicyShape, parts: list[tuple[s
 
 
 def require_tensors(found: Any, wanted: Mapping[str, Tensor]) -> None:
-    """Raises ValueError where `found` is no dictionary with tensors of these names, shapes and types:
-    torch would stretch some to fit."""
+    """Raises ValueError unless `found` is a dictionary with tensors of these names, shapes and
+    types: torch would broadcast some to fit."""
     tensors = found if isinstance(found, dict) else {}
     for name, tensor in wanted.items():
         one = _described(tensors.get(name))
@@ -283,7 +289,8 @@ def require_tensors(found: Any, wanted: Mapping[str, Tensor]) -> None:
 
 
 def _require_own_memory(name: str, tensor: Tensor) -> None:
-    """Raises ValueError where elements of a tensor are in one place: a small file could be of any size."""
+    """Raises ValueError if elements of a tensor share memory: a small file could then hold a tensor
+    of any size."""
     places = 1 + sum((size - 1) * step for size, step in zip(tensor.shape, tensor.stride()))
     if tensor.numel() > max(places, 0):
         raise ValueError(
@@ -292,7 +299,7 @@ def _require_own_memory(name: str, tensor: Tensor) -> None:
 
 
 def _described(value: Any) -> str:
-    """A tensor of float32 [16, 4]."""
+    """Describes a tensor, as "float32 [16, 4]", or says what a value is instead."""
     if value is None:
         return "nothing"
     if not isinstance(value, Tensor):
@@ -301,7 +308,8 @@ def _described(value: Any) -> str:
 
 
 NEW_TERMINATE_LOGIT = -4.0
-"""Log-odds, in every state, of a terminate action that the policy has not learned yet: one step in 55."""
+"""Log-odds, in every state, of a terminate action that the policy has not learned yet: it
+terminates in one step of 55."""
 
 _NETWORK = (
     "network",
@@ -320,11 +328,12 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
                parts: list[tuple[str, int]], file: pathlib.Path,
                network: OwnNetwork | None = None) -> SavedPolicy:  # fmt: skip
     """Gives `policy`, a new_policy(settings, shape, parts, network), the weights of the policy in
-    `file`, and returns that: networks, standard deviations, means and variances of observations.
+    `file`: networks, standard deviations, means and variances of observations. Returns the policy
+    read from the file.
 
-    Both must be the same network and see the same observations; CheckpointError says where they differ.
-    The task may be another one. Where only the new one is about to terminate, it starts with
-    NEW_TERMINATE_LOGIT, since what the head holds was never used.
+    Both must have the same network and see the same observations; CheckpointError says where they
+    differ. The task may differ. If only the new policy decides when to terminate, that decision
+    starts with NEW_TERMINATE_LOGIT, since its weights in the file were never trained.
     """
     saved = load_policy(file, network=network)
     ours = {name: getattr(settings, name) for name in _NETWORK}
@@ -361,7 +370,8 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
 
 
 def _difference(policy: dict[str, int], run: dict[str, int]) -> str:
-    """What one observes and the other does not, by the sizes of the parts."""
+    """How the observations of a policy and of a run differ, given names and sizes of their
+    parts."""
     faults = [
         f"{who} lacks {', '.join(name for name in has if name not in lacks)}"
         for who, lacks, has in (("the run", run, policy), ("the policy", policy, run))
@@ -376,8 +386,9 @@ def _difference(policy: dict[str, int], run: dict[str, int]) -> str:
 
 
 def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str, Any]]:
-    """Values and tensors of a file. Rejects files that would run code, and those of another format than FORMAT.
-    `remedy`: what to do about a file that is none; of itself it says how to come by a policy."""
+    """Reads the values and tensors of a file. Rejects files that would run code, and those whose
+    format is not FORMAT. `remedy`: what to do if the file is not a checkpoint; by default, the
+    message says where to find a policy."""
     try:
         handle = open(file, "rb")
     except OSError as error:
@@ -395,8 +406,8 @@ def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str
             values = json.loads(contents.pop("values"))
             if not isinstance(values, dict):
                 raise ValueError("its values have no names")
-        except Exception as error:  # torch raises whatever its readers do
-            # What torch advises is to let the file run code.
+        except Exception as error:  # torch's readers raise all kinds of exceptions
+            # Torch's own message advises to let the file run code, so it is not shown.
             raise CheckpointError(
                 f"{file} cannot be read as a checkpoint: found {os.fstat(handle.fileno()).st_size:,} "
                 f"bytes of something else, or a part of one; {remedy or _ANOTHER_POLICY}"
@@ -412,7 +423,7 @@ def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str
 
 def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) -> None:
     """Writes what load() reads, atomically."""
-    # Torch ends the process where the disk has no room for what it writes.
+    # Written to memory first, as torch aborts the process if the disk is full.
     contents = io.BytesIO()
     torch.save({"values": json.dumps({"format": FORMAT, **values}), **tensors}, contents)
     files.write_atomically(file, lambda handle: handle.write(contents.getbuffer()))

@@ -43,15 +43,15 @@ _PAGE, _REPORT = "curves.html", "report.json"
 
 
 def files_of(folder: pathlib.Path) -> list[pathlib.Path]:
-    """Where a run has its files in `folder`, and those of its checkpoints."""
+    """All files that a run in `folder` writes, including those of its checkpoints."""
     copies = own_code.COPIES.values()
     names = (own_code.RUN, TABLE, _PAGE, _REPORT, BEST, TEACHER, ".lock", *copies)
     return [*(folder / name for name in names), *(folder / "checkpoints").rglob("*")]
 
 
 def policies_in(folder: pathlib.Path) -> list[pathlib.Path]:
-    """The files of all policies that the run of a folder keeps: of its checkpoints, the oldest first, and the best one.
-    Raises Error where there are none."""
+    """The files of all policies in the folder of a run: those of its checkpoints, the oldest first,
+    then the best one. Raises Error if there are none."""
     kept = [one / POLICY for one in CheckpointFolder(folder, 1).complete()]
     best = folder / BEST
     policies = [*kept, *([best] if best.exists() else [])]
@@ -62,9 +62,9 @@ def policies_in(folder: pathlib.Path) -> list[pathlib.Path]:
 
 
 def require_no_run(folder: pathlib.Path) -> None:
-    """Raises SettingsError where the folder holds what a run has learned, or a file that it would write over, and Error
-    where that cannot be read. One that ended before its first checkpoint can be begun again: see begin_folder().
-    """
+    """Raises SettingsError if the folder holds a run that has learned something, or a file that a
+    run would overwrite, and Error if that file cannot be read. A run that ended before its first
+    checkpoint may be replaced: see begin_folder()."""
     file, checkpoints = folder / own_code.RUN, CheckpointFolder(folder, 1)
     if not file.exists():
         return
@@ -91,14 +91,14 @@ def require_no_run(folder: pathlib.Path) -> None:
 
 
 def take_folder(folder: pathlib.Path, held: contextlib.ExitStack, *, resumes: bool) -> None:
-    """Keeps others from writing into the folder of the run, while `held` is. Raises Error, OSError or SettingsError
-    where that is impossible."""
+    """Keeps other runs from writing into the folder until `held` is closed. Raises Error, OSError
+    or SettingsError if that is impossible."""
     if not resumes:
         files.require_folder(folder)
         folder.mkdir(parents=True, exist_ok=True)
     is_alone = held.enter_context(files.alone_in(folder))
     if not resumes:
-        # Another one may have come and gone since.
+        # Another run may have begun and ended since the first check.
         require_no_run(folder)
         if not is_alone and (folder / own_code.RUN).exists():
             raise SettingsError(
@@ -115,9 +115,9 @@ def begin_folder(
     resumes: bool,
     say: Callable[[str], None],
 ) -> None:
-    """Writes what the run is into its folder, in the place of one that ended before its first checkpoint. Raises
-    CheckpointError, Error or OSError where that is impossible."""
-    # A run that is resumed has the copies, with which it goes on.
+    """Writes the files that define the run into its folder. They replace a run that ended before
+    its first checkpoint. Raises CheckpointError, Error or OSError if that is impossible."""
+    # A resumed run goes on with the copies that are there.
     code = {} if resumes else _code_of(run, folder)
     if not resumes:
         _make_room(run, folder, code, say)
@@ -129,7 +129,8 @@ def begin_folder(
 
 
 def _code_of(run: Run, folder: pathlib.Path) -> dict[pathlib.Path, bytes]:
-    """What is copied of the user's files, so that the run can be resumed whatever becomes of them, by where."""
+    """Copies of the user's files, by the path to write them to. With them, the run can be resumed
+    whatever happens to the originals."""
     return {
         folder / own_code.COPIES[option]: file.read_bytes()
         for option, file in _sources_of(run).items()
@@ -137,7 +138,7 @@ def _code_of(run: Run, folder: pathlib.Path) -> dict[pathlib.Path, bytes]:
 
 
 def _sources_of(run: Run) -> dict[str, pathlib.Path]:
-    """The files of the user's, by the options that named them."""
+    """The user's files, by the options that named them."""
     named = {"--task": run.task_file, "--network": run.network_file}
     return {option: file for option, file in named.items() if file is not None}
 
@@ -145,9 +146,9 @@ def _sources_of(run: Run) -> dict[str, pathlib.Path]:
 def _make_room(
     run: Run, folder: pathlib.Path, code: dict[pathlib.Path, bytes], say: Callable[[str], None]
 ) -> None:
-    """Where another run ended before its first checkpoint, removes what that has written, but for what may be the only
-    one of its kind, which gets another name. Raises Error, and changes nothing, where a file of the user's is in the
-    place of `code`."""
+    """Removes the files of a run that ended before its first checkpoint. Files of which no other
+    copy may exist are renamed instead. If one of the user's files is where `code` is to be written,
+    raises Error and changes nothing."""
     file = folder / own_code.RUN
     before = read_run(file) if file.exists() else None
     replaced = _replaced_copies(run, before, folder, code)
@@ -170,7 +171,8 @@ def _make_room(
         say(f"its {old.name} is {aside.name} now")
     for unfinished in CheckpointFolder(folder, 1).all_unfinished():
         shutil.rmtree(unfinished, ignore_errors=True)
-    # The file that says what it was goes last, so that this can be done again.
+    # The file that identifies the old run goes last, so that an interrupted removal can be
+    # repeated.
     for old in (table, folder / _PAGE, file):
         old.unlink(missing_ok=True)
 
@@ -178,11 +180,12 @@ def _make_room(
 def _replaced_copies(
     run: Run, before: Run | None, folder: pathlib.Path, code: dict[pathlib.Path, bytes]
 ) -> list[pathlib.Path]:
-    """The copies of code that the run `before` has kept, and that are not this run's. Raises Error where another file is
-    in the place of one of this run's."""
+    """The code copies of the run `before` that differ from this run's. Raises Error if a file of
+    other origin is in the place of one of this run's copies."""
     replaced = []
     kept = _sources_of(before) if before is not None else {}
-    # What is the source of either run is the user's, and so is a copy that was changed since.
+    # A file that either run names as its source is the user's, and so is a copy that was edited
+    # later.
     sources = {*kept.values(), *_sources_of(run).values()}
     for option, name in own_code.COPIES.items():
         copy = folder / name
@@ -206,15 +209,16 @@ def _has_rows(table: pathlib.Path) -> bool:
 
 
 def _name_aside(file: pathlib.Path) -> pathlib.Path:
-    """task.before.py, or task.before.2.py, ...: one that nothing has."""
+    """The first unused name of task.before.py, task.before.2.py, ..."""
     numbers = itertools.chain(("",), (f".{number}" for number in itertools.count(2)))
     asides = (file.with_name(f"{file.stem}.before{number}{file.suffix}") for number in numbers)
     return next(aside for aside in asides if not os.path.lexists(aside))
 
 
 def is_complete(run: Run, folder: pathlib.Path) -> bool:
-    """Whether nothing is left to do: all steps are done, and the report was written after them and after
-    what a signal may have put off. Of a report that is none, the run writes another."""
+    """Whether nothing is left to do: all steps are done, and the report was written after them and
+    after anything that a signal put off. False if the report cannot be read; the run then writes
+    another."""
     done = CheckpointFolder(folder, run.settings.keep).steps
     try:
         report = json.loads((folder / _REPORT).read_text(encoding="utf-8"))
@@ -225,7 +229,8 @@ def is_complete(run: Run, folder: pathlib.Path) -> bool:
 
 
 class CheckpointFolder:
-    """The checkpoints of a run. Ranks write into a folder that has its name only when all are done."""
+    """The checkpoints of a run. The folder of a checkpoint gets its final name only after all ranks
+    have written to it."""
 
     def __init__(self, run: pathlib.Path, keep: int):
         self.run = run
@@ -233,26 +238,28 @@ class CheckpointFolder:
         self._keep = keep
 
     def begin(self, steps: int) -> pathlib.Path:
-        """The folder to write into, for all ranks; the first one calls this before the others write."""
+        """Makes the folder into which all ranks write; the first rank calls this before the others
+        write."""
         self.give_up(steps)
         unfinished = self.unfinished(steps)
         unfinished.mkdir(parents=True)
         return unfinished
 
     def unfinished(self, steps: int) -> pathlib.Path:
-        """Where ranks write until all are done."""
+        """The folder into which ranks write until all are done."""
         return self.folder / f".{steps:012d}.unfinished"
 
     def give_up(self, steps: int) -> None:
-        """Removes what ranks have written of one that will not be whole; it may hold room that others need."""
+        """Removes an unfinished checkpoint, which may take up disk space that others need."""
         shutil.rmtree(self.unfinished(steps), ignore_errors=True)
 
     def finish(self, steps: int) -> pathlib.Path:
-        """Gives it its name and deletes the oldest; the first rank calls this when all have written.
+        """Gives the checkpoint its final name and deletes the oldest ones; the first rank calls
+        this when all have written.
 
-        A run that is resumed and saved before its next step has a checkpoint of as many steps already, of the same
-        state but for what was reported since. Its files are replaced one by one, so that it is whole all the time: it
-        may be the only one."""
+        If a resumed run is saved before its next step, a checkpoint of that step exists already,
+        with the same state except for what was reported since. Its files are replaced one by one,
+        so that it stays complete at all times: it may be the only checkpoint."""
         final, unfinished = self.folder / f"{steps:012d}", self.unfinished(steps)
         if final.exists():
             for file in sorted(unfinished.iterdir()):
@@ -267,18 +274,19 @@ class CheckpointFolder:
         return final
 
     def complete(self) -> list[pathlib.Path]:
-        """All that are whole, the oldest first."""
+        """All complete checkpoints, the oldest first."""
         if not self.folder.is_dir():
             return []
         return sorted(path for path in self.folder.iterdir() if path.name.isdigit())
 
     def all_unfinished(self) -> list[pathlib.Path]:
-        """Those that a run has left which ended while it wrote them."""
+        """Unfinished checkpoints left by a run that ended while writing."""
         return list(self.folder.glob(".[0-9]*.unfinished"))
 
     @property
     def may_have_been(self) -> bool:
-        """Whether the run may have had some, also where they are on a disk that is not there, or were moved away."""
+        """Whether the run may have had checkpoints, even if they were moved away or their disk is
+        not mounted."""
         if (self.run / _REPORT).exists():
             return True
         if not os.path.lexists(self.folder):
@@ -302,12 +310,13 @@ class CheckpointFolder:
 
     @property
     def steps(self) -> int:
-        """After how many steps the latest was saved; 0 where there is none."""
+        """The number of steps after which the latest checkpoint was saved; 0 if there is none."""
         return max((int(path.name) for path in self.complete()), default=0)
 
     @property
     def without_latest(self) -> str:
-        """What to do where the latest cannot be taken up: its files are of no use apart."""
+        """What to do if the latest checkpoint cannot be loaded: its files are of no use without
+        each other."""
         *earlier, latest = self.complete()
         if earlier:
             return (

@@ -1,4 +1,4 @@
-"""What a run is about: its worlds, settings, policies and code, as its settings.json has it."""
+"""What defines a run: its worlds, settings, policies and code, as kept in its settings.json."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from galactic.learning.user_code import own_code, own_networks, own_tasks
 
 @dataclasses.dataclass
 class Run:
-    """What a run is about: kept in its settings.json."""
+    """What defines a run; kept in its settings.json."""
 
     world: pathlib.Path
     validation: pathlib.Path | None
@@ -29,7 +29,7 @@ class Run:
 
 
 def run_in(folder: pathlib.Path) -> Run:
-    """The run of a folder. Raises Error where that holds none."""
+    """The run in a folder. Raises Error if there is none."""
     file = folder / own_code.RUN
     if not file.is_file():
         message = f"does not exist: {folder} holds no run"
@@ -38,8 +38,8 @@ def run_in(folder: pathlib.Path) -> Run:
 
 
 def settings_in(folder: pathlib.Path) -> Settings:
-    """Those of a run, for another one: code of one's own is named by the files that the run began with, not by
-    its copies. Raises as run_in() does."""
+    """The settings of a run, for use in another: they name the user's code by the original files,
+    not by the run's copies. Raises what run_in() raises."""
     run = run_in(folder)
     changes = {}
     for setting, file in (("task", run.task_file), ("network", run.network_file)):
@@ -50,7 +50,8 @@ def settings_in(folder: pathlib.Path) -> Settings:
 
 
 def read_run(file: pathlib.Path) -> Run:
-    """Of a settings.json. Raises Error where it cannot be read, and CheckpointError where it is not one."""
+    """Reads a settings.json. Raises Error if the file cannot be read, and CheckpointError if it
+    does not describe a run."""
     try:
         contents = file.read_bytes()
     except OSError as error:
@@ -101,10 +102,10 @@ def write_run(run: Run, folder: pathlib.Path) -> None:
 
 
 def with_task(run: Run, simulation: str) -> Run:
-    """The run with the task of one's own that its settings name, in the simulation that this task wants.
-    `simulation`: the options of it that were given, beside the preset's. Makes the task, which alone knows
-    its options: in the process that launches ranks, too, so that it tells once what is wrong with it.
-    """
+    """The run with the user-defined task that its settings name, and with the simulation options
+    that this task wants. `simulation`: the options of the simulation that were given on the command
+    line. Creates the task, as only an instance knows its options. The process that launches the
+    ranks does so, too, so that an error is reported once."""
     name = own_code.named(run.settings.task, "--task")
     task = own_tasks.maker(name, run.settings.task_options)()
     settings = dataclasses.replace(
@@ -118,7 +119,7 @@ def with_task(run: Run, simulation: str) -> Run:
 
 
 def task_of(run: Run, folder: pathlib.Path | None) -> own_tasks.MakeTask | None:
-    """What makes the run's task, if that is one's own; of the copy in `folder` if it is given."""
+    """What makes the run's task, if that is user-defined; from the copy in `folder`, if given."""
     if not run.settings.task:
         return None
     name, siblings = _code_of(run.settings.task, "--task", run.task_file, folder)
@@ -126,7 +127,8 @@ def task_of(run: Run, folder: pathlib.Path | None) -> own_tasks.MakeTask | None:
 
 
 def with_network(run: Run) -> Run:
-    """The run with the network of one's own that its settings name. Looks for its class, as with_task() does."""
+    """The run with the user-defined network that its settings name. Loads its class, so that errors
+    are reported early."""
     name = own_code.named(run.settings.network, "--network")
     own_networks.with_options(own_networks.network_of(name), run.settings.network_options)
     settings = dataclasses.replace(run.settings, network=str(name))
@@ -136,7 +138,8 @@ def with_network(run: Run) -> Run:
 
 
 def network_of(run: Run, folder: pathlib.Path | None) -> own_networks.OwnNetwork | None:
-    """What makes the run's network, if that is one's own; of the copy in `folder` if it is given."""
+    """What makes the run's network, if that is user-defined; from the copy in `folder`, if
+    given."""
     if not run.settings.has_own_network:
         return None
     name, siblings = _code_of(run.settings.network, "--network", run.network_file, folder)
@@ -147,8 +150,8 @@ def network_of(run: Run, folder: pathlib.Path | None) -> own_networks.OwnNetwork
 def _code_of(
     text: str, option: str, file: pathlib.Path | None, folder: pathlib.Path | None
 ) -> tuple[own_code.CodeName, pathlib.Path | None]:
-    """What the settings of a run call code that is in a module or a `file`, and where the modules are that this
-    imports."""
+    """The name of the code that `text` in a run's settings refers to, in a module or a `file`, and
+    the folder of the modules that the file imports."""
     name = own_code.named(text, option)
     if file is None:
         return name, None
@@ -156,8 +159,8 @@ def _code_of(
 
 
 def kept_code(file: pathlib.Path, option: str, folder: pathlib.Path | None) -> pathlib.Path:
-    """Where the code is that `option` named: `file`, or the copy of it in the `folder` of a run that is resumed.
-    Raises Error where that copy is missing."""
+    """The file with the code that `option` named: `file`, or its copy in the `folder` of a resumed
+    run. Raises Error if that copy is missing."""
     copy = file if folder is None else folder / own_code.COPIES[option]
     if folder is not None and not copy.is_file():
         message = f"is missing, the copy of {file} with which the run began; put it back, or begin another run"

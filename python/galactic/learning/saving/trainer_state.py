@@ -1,4 +1,5 @@
-"""What a trainer.pt says beside the optimizer: how far a run is, and what it has told until then."""
+"""The contents of a trainer.pt besides the optimizer: how far a run is, and what it has reported so
+far."""
 
 from __future__ import annotations
 
@@ -12,9 +13,10 @@ from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
 
 @dataclass
 class TrainerState:
-    """Where a Trainer is. `row_count`: how many rows of curves.csv are of before. `added_columns`: which of its columns
-    a callback has added. `added`: what it has said since the latest row. `measures`, `logs`: names of what the task says.
-    `window`: EpisodeSums.by_name() of recent rollouts. `stopwatch`: its seconds."""
+    """The state of a Trainer. `row_count`: the number of rows in curves.csv at this point.
+    `added_columns`: the columns that a callback has added. `added`: what the callback has logged
+    since the latest row. `measures`, `logs`: names of what the task measures and logs. `window`:
+    EpisodeSums.by_name() of recent rollouts. `stopwatch`: seconds by name."""
 
     ranks: int
     updates: int
@@ -41,9 +43,9 @@ class TrainerState:
 
 
 def state_of(values: dict[str, Any], ranks: int, names: OwnNames, folder: pathlib.Path) -> TrainerState:  # fmt: skip
-    """The state that the values of a trainer.pt in `folder` are, for a run of so many ranks whose task says what
-    `names` name. Raises CheckpointError where they are of another run, ValueError where they are none.
-    """
+    """The state in the values of a trainer.pt in `folder`, for a run with `ranks` ranks whose task
+    reports what `names` lists. Raises CheckpointError if the values belong to a different run,
+    ValueError if they are malformed."""
     require_types(values, _TYPES)
     state = TrainerState(**{name: values[name] for name in _TYPES})
     if state.ranks != ranks:
@@ -67,7 +69,7 @@ def state_of(values: dict[str, Any], ranks: int, names: OwnNames, folder: pathli
     return state
 
 
-# Types that JSON gives what a TrainerState has.
+# The JSON types of the fields of a TrainerState.
 _TYPES = {
     "ranks": int,
     "updates": int,
