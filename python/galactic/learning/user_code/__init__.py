@@ -1,1 +1,2 @@
-"""Classes and functions of the user's, by what the command line calls them. Start reading at `own_code.py`."""
+"""The user's classes and functions, by the names that the command line gives. Start reading at
+`own_code.py`."""

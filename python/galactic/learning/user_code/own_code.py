@@ -1,4 +1,4 @@
-"""Code of one's own, by what the command line calls it: `reach.py:Reach`, or `lab.tasks:Reach`."""
+"""User code, by its name on the command line: `reach.py:Reach`, or `lab.tasks:Reach`."""
 
 from __future__ import annotations
 
@@ -19,19 +19,21 @@ from typing import Any, NamedTuple
 from galactic.learning.refusals import SettingsError, did_you_mean
 
 RUN = "settings.json"
-"""What a run is, in its folder."""
+"""The file that defines a run, in its folder."""
 _OWN = "galactic_own_"
-"""What names of modules begin with that are files of the user's."""
+"""The prefix of the names of modules that are loaded from the user's files."""
 _PLACES = (_OWN, "galactic.task_runner", "galactic.learning.user_code.")
-"""What names of modules begin with that are the user's, or call into them."""
+"""Prefixes of the names of modules that are the user's, or that call user code."""
 _NAMED: set[str] = set()
-"""The names of other modules that are the user's: those that options have named, or that have what they named."""
+"""The names of the user's other modules: those that options have named, or that define what was
+named."""
 COPIES = {"--task": "task.py", "--network": "network.py"}
-"""The copies of the files that options name, beside RUN."""
+"""The names of the copies, beside RUN, of the files that options name."""
 
 
 class CodeName(NamedTuple):
-    """A class or a function, the file or the module that it is in, and the option that named it."""
+    """The name of a class or function, the file or module that holds it, and the option that named
+    it."""
 
     place: str
     name: str
@@ -43,12 +45,13 @@ class CodeName(NamedTuple):
         return pathlib.Path(self.place) if self.place.endswith(".py") else None
 
     def __str__(self) -> str:
-        """What can be read again, without the folder of a file: runs are moved, files are copied."""
+        """A text that named() can read, without the folder of a file: runs are moved, and files are
+        copied."""
         return f"{self.file.name if self.file else self.place}:{self.name}"
 
 
 def named(text: str, option: str) -> CodeName:
-    """Of `FILE.py:NAME` or `MODULE:NAME`. Raises SettingsError for another text."""
+    """Parses `FILE.py:NAME` or `MODULE:NAME`. Raises SettingsError for any other text."""
     place, colon, name = text.rpartition(":")
     is_module = all(part.isidentifier() for part in place.split("."))
     if not colon or not name.isidentifier() or not (place.endswith(".py") or is_module):
@@ -57,8 +60,9 @@ def named(text: str, option: str) -> CodeName:
 
 
 def members_of(code: CodeName, siblings: pathlib.Path | None = None) -> dict[str, Any]:
-    """What the file or module has by name. It runs now; what it raises is the caller's, unless it ends the
-    program. `siblings`: where modules are that a file imports, if not beside it."""
+    """The members of the file or module, by name. It runs now, and its exceptions reach the caller;
+    if it tries to end the program, SettingsError is raised. `siblings`: the folder of the modules
+    that a file imports, if they are not beside it."""
     with goes_on(
         code, 'when it was imported; put what a program does behind: if __name__ == "__main__"'
     ):
@@ -67,7 +71,7 @@ def members_of(code: CodeName, siblings: pathlib.Path | None = None) -> dict[str
 
 @contextlib.contextmanager
 def goes_on(code: CodeName, when: str) -> Iterator[None]:
-    """Around code that has no say in whether the program ends. Raises SettingsError where it ends it."""
+    """A context for code that must not end the program. Raises SettingsError if it tries."""
     try:
         yield
     except SystemExit as end:
@@ -75,20 +79,22 @@ def goes_on(code: CodeName, when: str) -> Iterator[None]:
 
 
 def has_raised(error: BaseException) -> bool:
-    """Whether code of the user's has raised it, or what calls such code and takes what that returns."""
+    """Whether the error was raised by user code, or by code that calls it and checks what it
+    returns."""
     frames = (frame for frame, _ in traceback.walk_tb(error.__traceback__))
     modules = [str(frame.f_globals.get("__name__", "")) for frame in frames]
     return any(module in _NAMED or module.startswith(_PLACES) for module in modules)
 
 
 def _remember(module: str) -> None:
-    """Has has_raised() know a module of the user's; those of galactic, of which one may name a class, are none."""
+    """Registers a user module for has_raised(). Modules of galactic, whose classes can be named,
+    too, are not registered."""
     if module.partition(".")[0] != "galactic":
         _NAMED.add(module)
 
 
 def class_of(code: CodeName, base: type, base_name: str, siblings: pathlib.Path | None) -> Any:
-    """The class of that name, which inherits from `base`."""
+    """The class that `code` names. Raises SettingsError unless it inherits from `base`."""
     members = members_of(code, siblings)
     found = members.get(code.name)
     if isinstance(found, type) and issubclass(found, base):
@@ -107,8 +113,8 @@ def class_of(code: CodeName, base: type, base_name: str, siblings: pathlib.Path 
 
 
 def factory_of(code: CodeName, what: str) -> Callable[..., Any]:
-    """The function or class of that name, which is called with a folder and settings, and returns `what`. Its
-    file runs now; what that raises is the caller's."""
+    """The function or class that `code` names. It is called with a folder and settings, and must
+    return `what`. Its file runs now; exceptions of the file reach the caller."""
     found = members_of(code).get(code.name)
     if not callable(found):
         fault = f"{code.place} has no {code.name}" if found is None else f"{code} is no function"
@@ -133,7 +139,8 @@ def factory_of(code: CodeName, what: str) -> Callable[..., Any]:
 
 
 def mismatch(found: Any, positional: tuple[Any, ...], keywords: Mapping[str, Any]) -> str:
-    """Why something cannot be called so; nothing where it can, or where what is compiled does not tell."""
+    """Why `found` cannot be called with these arguments; "" if it can, or if it is compiled and has
+    no signature."""
     try:
         signature = inspect.signature(found)
     except ValueError:
@@ -149,9 +156,9 @@ _WORDS = {"true": "True", "false": "False", "none": "None"}
 
 
 def keywords_of(options: str, option: str) -> dict[str, Any]:
-    """What was given with `option` as keywords: "radius=0.2 kind=near dense=false" is {"radius": 0.2, "kind":
-    "near", "dense": False}. What reads as a number, list or other literal of Python is one, all else is
-    text."""
+    """The value of `option` as keyword arguments: "radius=0.2 kind=near dense=false" is {"radius":
+    0.2, "kind": "near", "dense": False}. Numbers, lists and other Python literals are converted;
+    anything else is text."""
     keywords: dict[str, Any] = {}
     for word in options.split():
         name, equals, value = word.partition("=")
@@ -166,8 +173,8 @@ def keywords_of(options: str, option: str) -> dict[str, Any]:
 
 
 def copy_beside(policy: pathlib.Path, option: str) -> pathlib.Path | None:
-    """The copy of what `option` named that belongs to a policy of a run's folder, or of one of its
-    checkpoints."""
+    """The run's copy of the file that `option` named, for a policy in the folder of a run or of one
+    of its checkpoints; None if there is none."""
     parents, copy = policy.absolute().parents, COPIES[option]
     for folder in [
         parents[0],
@@ -179,16 +186,16 @@ def copy_beside(policy: pathlib.Path, option: str) -> pathlib.Path | None:
 
 
 def place_beside(policy: pathlib.Path, option: str, trained: str) -> str:
-    """What to give with `option` to a policy that was trained with the class `trained`. The policy may be a
-    stranger's, and so is what it calls its class."""
+    """The value to suggest for `option` for a policy that was trained with the class `trained`. The
+    policy may be a stranger's, so the name of its class is checked."""
     copy = copy_beside(policy, option)
     _, _, name = trained.rpartition(":")
     return f"{copy}:{name}" if copy and name.isidentifier() else "FILE.py:CLASS"
 
 
 def siblings_of(code: CodeName) -> pathlib.Path | None:
-    """Where the modules are that a run's copy of a file imports: where it was copied from. None for what is
-    no such copy."""
+    """The folder of the modules that a run's copy of a file imports: the folder of the original.
+    None if `code` is not such a copy."""
     if code.file is None or code.file.name != COPIES.get(code.option):
         return None
     try:
@@ -206,7 +213,7 @@ def _module_of(code: CodeName, siblings: pathlib.Path | None) -> Any:
             return module
         except ModuleNotFoundError as error:
             if error.name not in _with_parents(code.place):
-                raise  # of what the module imports
+                raise  # a module that this one imports is missing
             raise SettingsError(
                 f"{code.option}: there is no module {code.place}; install it, name its folder in PYTHONPATH, or "
                 "name a file (FILE.py:NAME)"
@@ -220,7 +227,9 @@ def _module_of(code: CodeName, siblings: pathlib.Path | None) -> Any:
         sys.path.append(folder)
     name = _module_name(code.file)
     if name in sys.modules:
-        return sys.modules[name]  # another one would have other classes, which pickle refuses
+        return sys.modules[
+            name
+        ]  # a second module would have different classes, which pickle rejects
     spec = importlib.util.spec_from_file_location(name, code.file)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -234,7 +243,8 @@ def _module_of(code: CodeName, siblings: pathlib.Path | None) -> Any:
 
 
 def _module_name(file: pathlib.Path) -> str:
-    """Another one for each file, and for what it says now; none that anything else could be imported by."""
+    """A module name that is unique to this file and its present contents, and that no import
+    statement would use."""
     digest = hashlib.sha256(os.fsencode(file.resolve()) + b"\0" + file.read_bytes()).hexdigest()
     return f"{_OWN}{file.stem}_{digest[:16]}"
 

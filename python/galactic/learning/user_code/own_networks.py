@@ -1,5 +1,5 @@
-"""Networks of one's own: encoders that the user writes, and the checks that tell what is wrong with one before
-anything is learned."""
+"""User-defined networks: encoders that the user writes, and checks that report what is wrong with
+one before training begins."""
 
 from __future__ import annotations
 
@@ -32,26 +32,26 @@ BASE = "galactic.learning.encoders.Encoder"
 
 
 class Seen(NamedTuple):
-    """What a network sees, in sizes: what its class is made with."""
+    """The sizes of what a network sees: the argument of its class."""
 
     state: int
-    """S, numbers of Inputs.state: normalized as the settings say, without what the critic alone sees, and
-    behind them their closeups."""
+    """S, numbers of Inputs.state: normalized as the settings say, without what only the critic
+    sees, then their closeups."""
     parts: Mapping[str, slice]
-    """Where the parts of the observation are in a row of the state, by name."""
+    """The columns of each part of the observation in a row of the state, by name."""
     images: Mapping[str, tuple[int, ...]]
-    """Of one picture, by name: `rgb` is (height, width, 3), `depth` (height, width)."""
+    """The shape of one picture, by name: `rgb` is (height, width, 3), `depth` (height, width)."""
     actions: int
     """A, numbers of Inputs.previous: the motions, then hand and terminate."""
 
     @property
     def channels(self) -> int:
-        """C, channels of a picture, as encoders.images() has it."""
+        """C, channels of a picture from encoders.images()."""
         return 3 * ("rgb" in self.images) + ("depth" in self.images)
 
 
 def seen_by(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]]) -> Seen:
-    """What the network of such a policy sees."""
+    """What the network of a policy with these settings sees."""
     edge = settings.image_size
     places, first = {}, 0
     for name, size in parts_of_actor(settings.critic_only, parts):
@@ -62,14 +62,14 @@ def seen_by(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, i
 
 
 class _Trial(NamedTuple):
-    """What a network is tried out with."""
+    """Inputs with which a network is tried out."""
 
     inputs: Inputs
     memory: Tensor  # [n, M]: before the first step
     starts: Tensor  # [T, n] bool
 
     def part(self, steps: slice, envs: slice) -> _Trial:
-        """Some of its steps of some of its envs."""
+        """Some of the steps of some of the envs."""
         parts = [None if one is None else one[steps, envs] for one in self.inputs]
         state, *seen = parts
         assert state is not None
@@ -77,8 +77,8 @@ class _Trial(NamedTuple):
 
 
 class OwnNetwork(NamedTuple):
-    """The class of a network, and what it is made with. `digest`: SHA-256 of its file, by which another one is
-    told apart."""
+    """The class of a network, and its arguments. `digest`: SHA-256 of its file, to recognize a
+    different one."""
 
     code: CodeName
     make_encoder: Callable[..., Encoder]
@@ -86,8 +86,8 @@ class OwnNetwork(NamedTuple):
     digest: str
 
     def make(self, seen: Seen, recurrent: bool) -> Encoder:
-        """One, tried out. Raises NetworkError where it cannot be part of a policy, with a GRU behind it if that
-        is `recurrent`."""
+        """Makes the encoder and tries it out. Raises NetworkError if it cannot be part of a policy,
+        with a GRU behind it if `recurrent`."""
         with goes_on(self.code, "when it was made; raise an exception instead"):
             encoder = self._tried("__init__()", lambda: self.make_encoder(seen, **self.keywords))
         if recurrent and encoder.memory:
@@ -123,7 +123,8 @@ class OwnNetwork(NamedTuple):
         self._require_unmixed(encoder.eval(), trial)
 
     def _require_forgetting(self, encoder: Encoder, trial: _Trial, features: Tensor) -> None:
-        """All of the episodes begin in the first step, so that the memory before it is of no account."""
+        """Checks that the memory before the start of an episode has no effect: all episodes of the
+        trial begin in its first step."""
         other, _ = self._result(encoder, trial._replace(memory=torch.ones_like(trial.memory)))
         if not _are_same(other, features):
             raise self._fault(
@@ -132,7 +133,8 @@ class OwnNetwork(NamedTuple):
             )
 
     def _require_unmixed(self, encoder: Encoder, trial: _Trial) -> None:
-        """It acts one step after the other, and learns many at once, of any number of envs."""
+        """Checks that steps and envs do not influence each other: a network acts step by step, but
+        learns from many steps of any number of envs at once."""
         whole = self._result(encoder, trial)
         steps, envs = trial.starts.shape
         by_step, after = [], trial.memory
@@ -167,12 +169,12 @@ class OwnNetwork(NamedTuple):
             )
 
     def _result(self, encoder: Encoder, trial: _Trial) -> tuple[Tensor, Tensor]:
-        """Features and memory after its steps."""
+        """The features of a trial, and the memory after its steps."""
         inputs, memory, starts = trial
         steps, envs = starts.shape
         with torch.no_grad(), goes_on(self.code, "in forward(); raise an exception instead"):
             if encoder.memory:
-                # What it is given it may change in place.
+                # The network may change its arguments in place.
                 before = memory.clone()
                 found = self._tried("forward()", lambda: encoder(inputs, before, starts.clone()))
                 if not isinstance(found, tuple) or len(found) != 2:
@@ -199,7 +201,8 @@ class OwnNetwork(NamedTuple):
             )
 
     def _tried(self, method: str, work: Callable[[], Any]) -> Any:
-        """What it returns. What it raises becomes a sentence that says where."""
+        """The result of `work`. An exception becomes a NetworkError that says where it was
+        raised."""
         try:
             return work()
         except Exception as error:  # of the user's code
@@ -216,13 +219,14 @@ class OwnNetwork(NamedTuple):
 
 
 def own_network(text: str) -> OwnNetwork:
-    """What `text` names, for policies that know the options that they were made with."""
+    """The network that `text` names, without options: a policy file holds its own."""
     code = named(text, "--network")
     return network_of(code, siblings_of(code))
 
 
 def with_options(network: OwnNetwork, options: str) -> OwnNetwork:
-    """The same, to be made with these options. Raises SettingsError where it cannot be."""
+    """The same network, to be made with these options. Raises SettingsError if its class does not
+    take them."""
     keywords = keywords_of(options, "--network-options")
     fault = mismatch(network.make_encoder, (Seen(0, {}, {}, 0),), keywords)
     if fault:
@@ -233,7 +237,7 @@ def with_options(network: OwnNetwork, options: str) -> OwnNetwork:
 
 
 def network_of(code: CodeName, siblings: pathlib.Path | None = None) -> OwnNetwork:
-    """The class of that name. Its file runs now: see own_code.members_of()."""
+    """The network whose class `code` names. Its file runs now: see own_code.members_of()."""
     found = class_of(code, Encoder, BASE, siblings)
     if found.forward is Encoder.forward:
         raise NetworkError(f"--network: {code} has no forward(); write one, which returns features")
@@ -241,7 +245,7 @@ def network_of(code: CodeName, siblings: pathlib.Path | None = None) -> OwnNetwo
 
 
 def _digest(code: CodeName, found: type[Encoder]) -> str:
-    """SHA-256 of the file that was named, or that a module's class is from; nothing where no source is there."""
+    """SHA-256 of the named file, or of the source of a module's class; "" if there is no source."""
     try:
         file = code.file or pathlib.Path(inspect.getsourcefile(found) or "")
         return hashlib.sha256(file.read_bytes()).hexdigest()
@@ -250,8 +254,8 @@ def _digest(code: CodeName, found: type[Encoder]) -> str:
 
 
 def _trial(encoder: Encoder, seen: Seen) -> _Trial:
-    """Two steps of three envs, whose episodes begin in the first; that of one env is over then, and another one
-    begins."""
+    """Two steps of three envs. All episodes begin in the first step; in the second, one env begins
+    another."""
     steps, envs = 2, 3
     starts = torch.zeros(steps, envs, dtype=torch.bool)
     starts[0] = starts[1, 0] = True
@@ -260,7 +264,8 @@ def _trial(encoder: Encoder, seen: Seen) -> _Trial:
 
 
 _SAME = 1e-4
-"""Between numbers of which sums may be in another order, as a share of the largest, of those above 1."""
+"""The tolerance for sums in a different order, relative to the largest number if that is above
+1."""
 
 
 def _are_same(one: Tensor, other: Tensor) -> bool:
@@ -271,13 +276,13 @@ def _are_same(one: Tensor, other: Tensor) -> bool:
 
 
 def some_inputs(encoder: Encoder, seen: Seen, steps: int, envs: int) -> Inputs:
-    """Made up, the same each time, and other numbers everywhere."""
+    """Made-up inputs: the same in each call, and different numbers everywhere."""
     random = torch.Generator().manual_seed(1)
 
     def some(*shape: int) -> Tensor:
         return torch.rand(steps, envs, *shape, generator=random)
 
-    # Noise of many pixels has everywhere the same mean, and a picture of one's own has not.
+    # Pictures of noise all have about the same mean, so each gets its own brightness.
     light = torch.linspace(0.1, 1.0, steps * envs).view(steps, envs, 1, 1)
     rgb = depth = None
     if "rgb" in seen.images:
@@ -295,5 +300,5 @@ def _described(value: Any) -> str:
 
 
 def _source(found: Any) -> str:
-    """The file that a class is from."""
+    """The file that defines a class."""
     return str(found.forward.__code__.co_filename)

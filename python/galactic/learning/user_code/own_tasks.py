@@ -1,4 +1,4 @@
-"""Tasks of one's own, and what they are made with."""
+"""User-defined tasks, and their arguments."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ MakeTask = Callable[[], Task]
 
 
 def require_use(given: Mapping[str, Any]) -> None:
-    """Raises SettingsError where settings that were given make a class that nobody named."""
+    """Raises SettingsError if options for a task's class were given, but no class."""
     if "task_options" in given and not given.get("task"):
         raise SettingsError("--task-options goes with --task; name one, or leave it out")
 
 
 def maker(task: CodeName, options: str, siblings: pathlib.Path | None = None) -> MakeTask:
-    """What makes the task with these options (own_code.keywords_of()): see members_of()."""
+    """A function that makes the task with these options (own_code.keywords_of()). The file of the
+    task runs now: see own_code.members_of()."""
     found = class_of(task, Task, "galactic.Task", siblings)
     keywords = keywords_of(options, "--task-options")
     fault = mismatch(found, (), keywords)
@@ -37,9 +38,9 @@ def maker(task: CodeName, options: str, siblings: pathlib.Path | None = None) ->
 
 
 def simulation_below(task: Task, preset: str, given: str) -> str:
-    """Options of the simulation as Settings.simulation has them: the preset's, over them the task's, over
-    these the ones that were given; and the task below. Raises SettingsError where another one was given.
-    """
+    """The options of the simulation in the form of Settings.simulation. The task's options override
+    the preset's, the given ones override both, and `task` names the task's base. Raises
+    SettingsError if `given` sets `task`."""
     try:
         require_options(task)
     except ValueError as error:
