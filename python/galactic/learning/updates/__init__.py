@@ -1,1 +1,1 @@
-"""What improves a policy, by rollouts. Start reading at `learner.py`."""
+"""Improves a policy with rollouts. Start reading at `learner.py`."""

@@ -11,9 +11,9 @@ from galactic.learning.saving.checkpoint import require_tensors
 class FlatAdam:
     """Adam (Kingma and Ba 2015) with the norm of the gradient clipped.
 
-    The parameters of the policy become views of one flat tensor, and their gradients of another: one
-    sum over ranks, one norm and one step instead of one for each layer, which is most of the time of
-    a small network. The policy must stay on its device.
+    The parameters of the policy become views of one flat tensor, and their gradients views of
+    another. So there is one sum over ranks, one norm and one step, instead of one per layer, which
+    would take most of the time of a small network. The policy must stay on its device.
     """
 
     def __init__(self, policy: nn.Module, learning_rate: float, epsilon: float):
@@ -25,8 +25,9 @@ class FlatAdam:
         self.parameters.grad = self.gradients
         first = 0
         for view in views:
-            # The order of axes in memory stays: channels_last weights remain so. Gaps between elements, which slices of
-            # other tensors have, do not: the next parameter would lie in them.
+            # Keep the order of axes in memory, so that channels_last weights remain so. Do not keep
+            # gaps between elements, as in slices of other tensors: the next parameter would lie in
+            # them.
             strides = torch.empty_like(view, memory_format=torch.preserve_format).stride()
             place = (view.shape, strides, first)
             flat = self.parameters.data.as_strided(*place)
@@ -49,7 +50,8 @@ class FlatAdam:
         self.gradients.zero_()
 
     def step(self, most_norm: float) -> Tensor:
-        """One step; returns the norm of the gradient before it was clipped to `most_norm`; 0: it is not."""
+        """One step. The norm of the gradient is clipped to `most_norm`, unless that is 0. Returns
+        the norm before clipping."""
         norm = torch.linalg.vector_norm(self.gradients)
         if most_norm > 0.0:
             self.gradients.mul_(torch.clamp(most_norm / (norm + 1e-6), max=1.0))
@@ -57,11 +59,12 @@ class FlatAdam:
         return norm
 
     def state_dict(self) -> dict[str, Tensor]:
-        """Moments and step count; the parameters are the policy's."""
+        """Moments and step count; the parameters are saved with the policy."""
         return dict(self._adam.state[self.parameters])
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
-        """Raises ValueError where it is not the state after a step of as many parameters."""
+        """Raises ValueError unless `state` is that of an optimizer of as many parameters after at
+        least one step."""
         moments = dict.fromkeys(("exp_avg", "exp_avg_sq"), self.parameters)
         require_tensors(state, {"step": torch.tensor(0.0), **moments})
         own = self._adam.state[self.parameters]

@@ -1,4 +1,4 @@
-"""Learning by imitation: what demonstrations show becomes what a policy is likeliest to do (behavioral
+"""Learning by imitation: makes the demonstrated actions the likeliest ones of a policy (behavioral
 cloning: Pomerleau 1989; with a memory, as in Wijmans et al. 2020, over stretches of episodes)."""
 
 from __future__ import annotations
@@ -31,19 +31,20 @@ from galactic.learning.updates.schedules import learning_rate_at
 
 @dataclasses.dataclass
 class DemonstrationRollout(Rollout):
-    """A rollout that comes out of demonstrations. Values, rewards and log-probabilities are not filled."""
+    """A rollout taken from demonstrations. Values, rewards and log-probabilities are not filled."""
 
     returns: Tensor = dataclasses.field(default_factory=lambda: torch.zeros(0))
-    """[T, N]: what the episode paid from there on, discounted."""
+    """[T, N]: the discounted return from that step to the end of the episode."""
     by_expert: Tensor = dataclasses.field(default_factory=lambda: torch.zeros(0, dtype=torch.bool))
-    """[T, N] bool: the steps to learn from."""
+    """[T, N] bool: the steps in which the expert acted, which are those to learn from."""
     last_hidden: Tensor = dataclasses.field(default_factory=lambda: torch.zeros(0))
     """[N, H]: the memory after the last step, which the learner fills."""
 
 
 class DemonstrationSampler:
-    """Fills rollouts with solved episodes: in the place of each of N envs there is a stream of episodes, one
-    after the other. Each rank has a share of the episodes, and shuffles it anew for each pass."""
+    """Fills rollouts with solved episodes: each of the N envs is replaced by a stream of episodes,
+    one after the other. Each rank has its share of the episodes, and shuffles it anew for each
+    pass."""
 
     PHASES = ("reading",)
     plays_episodes = False
@@ -51,7 +52,7 @@ class DemonstrationSampler:
     def __init__(
         self, demonstrations: Demonstrations, settings: Settings, policy: Policy, group: Group
     ):
-        """Raises CheckpointError where a rank has nothing to learn from."""
+        """Raises CheckpointError if there are fewer solved episodes than ranks."""
         solved = np.flatnonzero(demonstrations.endings == EpisodeEnd.SUCCESS)
         if len(solved) < group.size:
             raise CheckpointError(
@@ -66,7 +67,8 @@ class DemonstrationSampler:
         self._device = group.device
         self.episodes = EpisodeSums()
         self.waiting = settings.envs
-        """No env has finished an episode: none is played."""
+        """All envs count as waiting for their first end of an episode, as no episodes are
+        played."""
         self.stopwatch = Stopwatch()
         about = demonstrations.about
         images = {name: about.images[name] for name in settings.sight}
@@ -85,8 +87,9 @@ class DemonstrationSampler:
             by_expert=torch.zeros_like(empty.ends),
             last_hidden=empty.rewards.new_zeros(settings.envs, policy.hidden_size),
         )
-        # How many episodes the streams have begun, of all passes, and where each is: which of the share it
-        # has begun as, in these numbers, and how many steps of it are over.
+        # `_begun` is the number of episodes that all streams have begun, over all passes. `_at` has
+        # a row for each stream: the number of its episode in this count, and how many steps of it
+        # are done. `_orders` is the order of the share in a pass, by the number of the pass.
         self._begun = 0
         self._at = np.zeros((settings.envs, 2), np.int64)
         self._orders: dict[int, np.ndarray] = {}
@@ -124,7 +127,7 @@ class DemonstrationSampler:
         return state
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
-        """Raises ValueError where it is not the state of as many streams of as many episodes."""
+        """Raises ValueError unless `state` fits this number of streams and these demonstrations."""
         require_tensors(state, self.state_dict())
         if not torch.equal(state["digest"], self._digest):
             raise ValueError(
@@ -150,7 +153,7 @@ class DemonstrationSampler:
         rollout.steps = 0
 
     def _previous_after(self) -> Tensor:
-        """[N, A]: the action before the step that comes; where an episode begins, nobody looks at it."""
+        """[N, A]: the action before the next step; where an episode begins, it is not used."""
         rollout = self.rollout
         return rollout.actions[-1] if rollout.steps else rollout.first_previous
 
@@ -158,7 +161,8 @@ class DemonstrationSampler:
         return int(self._demonstrations.lengths[self._episode(number)])
 
     def _next_rows(self) -> np.ndarray:
-        """int64 [T, N]: which steps of all demonstrations come next. Marks where episodes begin."""
+        """int64 [T, N]: the rows of the next steps among all demonstrations. Marks in the rollout
+        where episodes begin."""
         starts = np.zeros(self.rollout.actions.shape[:2], np.bool_)
         rows = np.empty(starts.shape, np.int64)
         horizon, streams = rows.shape
@@ -190,19 +194,20 @@ class DemonstrationSampler:
         rollout.returns.copy_(torch.from_numpy(self._returns[rows]))
 
     def _episode(self, number: int) -> int:
-        """Which demonstration is begun as the `number`-th of all passes over the share."""
+        """The demonstration that is number `number` in the sequence of all passes over the
+        share."""
         share = self._share
         one, place = divmod(number, len(share))
         if one not in self._orders:
             keys = hashed(self._seed ^ 0x73686F77, share, np.full_like(share, one), 1)[:, 0]
-            # Streams are seldom more than a pass apart.
+            # Keep no order older than the previous pass: streams are seldom further apart.
             self._orders = {p: order for p, order in self._orders.items() if p + 1 >= one}
             self._orders[one] = share[np.argsort(keys, kind="stable")]
         return int(self._orders[one][place])
 
 
 def _digest_of(demonstrations: Demonstrations) -> Tensor:
-    """uint8 [32]: what is learned of them, but for images."""
+    """uint8 [32]: SHA-256 of everything in the demonstrations that is learned, except images."""
     digest = hashlib.sha256()
     for array in (demonstrations.lengths, demonstrations.endings):
         digest.update(array.tobytes())
@@ -213,7 +218,7 @@ def _digest_of(demonstrations: Demonstrations) -> Tensor:
 
 
 def _returns_of(demonstrations: Demonstrations, gamma: float) -> np.ndarray:
-    """float32 [steps of all of them]: the sum of what is paid from each on, discounted."""
+    """float32 [steps of all demonstrations]: the discounted return from each step on."""
     steps = demonstrations.steps
     rewards = demonstrations.take("rewards", np.arange(steps)).astype(np.float64)
     returns = rewards.copy()
@@ -226,7 +231,8 @@ def _returns_of(demonstrations: Demonstrations, gamma: float) -> np.ndarray:
 
 
 class ImitationLearner(Learner):
-    """Makes what an expert did likelier, and the values what its episodes paid."""
+    """Makes the actions of the expert likelier, and fits the values to the returns of its
+    episodes."""
 
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
         assert isinstance(rollout, DemonstrationRollout)
@@ -259,8 +265,8 @@ class ImitationLearner(Learner):
     def _step(
         self, rollout: DemonstrationRollout, chosen: Tensor, steps_of_all: float
     ) -> dict[str, Tensor]:
-        """One step of the optimizer; sums over the expert's steps of policy_loss, value_loss and entropy, and the norm of
-        the gradient, grad_norm."""
+        """One step of the optimizer. Returns policy_loss, value_loss and entropy, summed over the
+        expert's steps, and grad_norm, the norm of the gradient."""
         steps = rollout.steps
         self.optimizer.clear()
         outputs = self._outputs(rollout, chosen)
@@ -285,8 +291,8 @@ class ImitationLearner(Learner):
 
 def require_same(demonstrations: Demonstrations, settings: Settings, observed: Observed,
                  images: Mapping[str, tuple[int, ...]]) -> None:  # fmt: skip
-    """Raises Error where a run, whose network sees `images`, observes or does other things than its
-    demonstrations, which may have more images."""
+    """Raises Error if the observations or actions of a run, whose network sees `images`, differ
+    from those of its demonstrations. These may have additional images."""
     about = demonstrations.about
     camera = about.camera
     if images and camera is not None:

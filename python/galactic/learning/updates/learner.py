@@ -1,4 +1,5 @@
-"""What improves a policy, by rollouts of all ranks: see ppo.py and imitation.py."""
+"""The base of what improves a policy with the rollouts of all ranks: see ppo.py and
+imitation.py."""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from galactic.learning.updates.schedules import PacedRate
 
 
 class Learner:
-    """Improves a policy by the rollouts of all ranks. All ranks keep the same parameters, bit for
+    """Improves a policy with the rollouts of all ranks. All ranks have the same parameters, bit for
     bit: they start from the first rank's, and apply the same sum of gradients."""
 
     def __init__(self, policy: Policy, settings: Settings, group: Group):
@@ -33,7 +34,7 @@ class Learner:
         self.share_policy()
 
     def share_policy(self) -> None:
-        """Gives each rank the first one's policy: they begin alike."""
+        """Copies the first rank's policy to all ranks, so that they begin with the same one."""
         for tensor in (self.optimizer.parameters, *self.policy.buffers()):
             self.group.copy_from_first(tensor)
 
@@ -54,8 +55,8 @@ class Learner:
                 yield torch.from_numpy(part).to(rollout.actions.device)
 
     def _outputs(self, rollout: Rollout, chosen: Tensor) -> Outputs:
-        """What the policy makes of some envs of a rollout."""
-        # Whoever acted with it left it in the other mode, in which cuDNN keeps no gradients of a GRU.
+        """The policy's outputs for some envs of a rollout."""
+        # The policy acts in eval mode, in which cuDNN cannot compute gradients of a GRU.
         self.policy.train()
         with self.precision.autocast():
             hidden = None if rollout.first_hidden is None else rollout.first_hidden[chosen]
@@ -63,7 +64,8 @@ class Learner:
             return self.policy(inputs, hidden, rollout.starts[: rollout.steps, chosen])
 
     def _descend(self, loss: Tensor) -> Tensor:
-        """One step of the optimizer, after optimizer.clear(); the norm of the gradient of all ranks."""
+        """One step of the optimizer, after optimizer.clear(). Returns the norm of the gradient over
+        all ranks."""
         loss.backward()
         self.group.sum(self.optimizer.gradients)
         norm = self.optimizer.step(self.settings.max_grad_norm)

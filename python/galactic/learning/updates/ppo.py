@@ -28,14 +28,15 @@ class Loss:
     """The loss of a mini-batch, and sums of its parts over the mini-batch's steps."""
 
     total: Tensor
-    """To be minimized; already divided by the steps of all ranks."""
+    """The loss to minimize, already divided by the mini-batch's steps on all ranks."""
     sums: dict[str, Tensor]
-    """Of policy_loss, value_loss, entropy, kl and clipped, and how many steps they are of: steps."""
+    """The sums of policy_loss, value_loss, entropy, kl and clipped, and `steps`, the number of
+    steps in them."""
 
 
 @dataclass
 class Batch:
-    """What a mini-batch was when it was collected; all of shape [T, n]."""
+    """The data of a mini-batch from when it was collected; all of shape [T, n] unless noted."""
 
     actions: Tensor  # [T, n, A]
     log_probs: Tensor
@@ -46,7 +47,7 @@ class Batch:
 
 def ppo_loss(outputs: Outputs, batch: Batch, settings: Settings, entropy_coefficient: float,
              steps: float) -> Loss:  # fmt: skip
-    """Clipped surrogate, half the squared error of the value, and entropy, added over a mini-batch
+    """Clipped surrogate, half the squared error of the value, and entropy, summed over a mini-batch
     and divided by `steps`, the number of steps of this mini-batch on all ranks."""
     log_ratio = outputs.actions.log_prob(batch.actions) - batch.log_probs
     ratio = log_ratio.exp()
@@ -79,14 +80,15 @@ def ppo_loss(outputs: Outputs, batch: Batch, settings: Settings, entropy_coeffic
 
 @dataclass
 class TeacherTargets:
-    """What a teacher would have done in the steps of a rollout, and how much that counts."""
+    """What a teacher would have done in the steps of a rollout, and the weight of its loss."""
 
     actions: ActionDistribution  # of shape [T, N]
     weight: float
 
 
 class PpoLearner(Learner):
-    """Improves a policy by what its rollouts earned, and by what a teacher would have done in them."""
+    """Improves a policy with the rewards of its rollouts, and with what a teacher would have done
+    in them."""
 
     def __init__(self, policy: Policy, settings: Settings, group: Group,
                  teacher: Teacher | None = None):  # fmt: skip
@@ -137,8 +139,8 @@ class PpoLearner(Learner):
     def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch,
               targets: TeacherTargets | None, entropy_coefficient: float,
               steps_of_all: float) -> dict[str, Tensor]:  # fmt: skip
-        """One step of the optimizer; the sums of its losses, and of the divergence from the teacher, teacher_kl, and the
-        norm of the gradient, grad_norm."""
+        """One step of the optimizer. Returns the sums of its losses and of teacher_kl, the
+        divergence from the teacher, and grad_norm, the norm of the gradient."""
         self.optimizer.clear()
         outputs = self._outputs(rollout, chosen)
         loss = ppo_loss(outputs, batch, self.settings, entropy_coefficient, steps_of_all)
@@ -150,8 +152,10 @@ class PpoLearner(Learner):
         return {**loss.sums, "teacher_kl": divergence.detach(), "grad_norm": norm}
 
     def _normalized(self, raw: Tensor) -> tuple[Tensor, float]:
-        """Advantages of mean 0 and variance 1 over all ranks, and the steps of all ranks."""
-        # The variance is a small difference of large sums where all advantages are far from zero.
+        """The advantages, normalized to mean 0 and variance 1 over all ranks if the settings ask
+        for it, and the number of steps of all ranks."""
+        # In double precision: if all advantages are far from zero, the variance is a small
+        # difference of large sums.
         exact = raw.double()
         found = over_ranks(
             self.group,
@@ -165,8 +169,9 @@ class PpoLearner(Learner):
         return (raw - mean) / (deviation + 1e-5), count
 
     def _limit_exploration(self, progress: float) -> None:
-        """Noise that a policy may lean on to the end is missing when it acts by its means: less and
-        less of it lets the means learn what the noise did."""
+        """Lowers the limit of the log-stds. A policy that relies on its noise to the end does worse
+        when it acts on its means alone; with less and less noise, the means learn to do what the
+        noise did."""
         self.policy.action.limit_log_std(log_std_limit_at(self.settings, progress))
 
     def _report(self, sums: Sums, raw: Tensor, returns: Tensor) -> dict[str, float]:

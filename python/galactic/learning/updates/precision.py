@@ -1,4 +1,4 @@
-"""Arithmetic on GPUs: full, TF32, or bfloat16."""
+"""Precision of arithmetic on GPUs: float32, TF32 or bfloat16."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ import torch
 
 
 class Precision:
-    """How networks are computed: `fp32`; `tf32`: multiplications with 10 bits of mantissa; `bf16`: of what
-    `sees_images`, that is before the memory in bfloat16, but for FullLinear layers; these and the memory
-    (multiplied as with `tf32`), losses and parameters in float32. On processors all are fp32."""
+    """How networks are computed. `fp32`: in float32. `tf32`: multiplications with 10 bits of
+    mantissa. `bf16`: if the network `sees_images`, the layers before the memory are computed in
+    bfloat16, except FullLinear layers; those and the memory (multiplied as with `tf32`), losses and
+    parameters stay in float32. On processors, everything is fp32."""
 
     def __init__(self, name: str, device: torch.device, *, sees_images: bool = True):
         self.tunes = device.type == "cuda"
-        """Whether convolutions are timed anew for each shape of what they are given: see cudnn.benchmark."""
+        """Whether cuDNN times its convolutions anew for each shape of their inputs: see
+        cudnn.benchmark."""
         self._bf16 = name == "bf16" and device.type == "cuda" and sees_images
         if device.type == "cuda":
             quick = name in ("tf32", "bf16")
@@ -23,7 +25,7 @@ class Precision:
             torch.backends.cudnn.benchmark = self.tunes
 
     def autocast(self) -> contextlib.AbstractContextManager[None]:
-        """Around every use of a policy."""
+        """The context for every use of a policy."""
         if self._bf16:
             return torch.autocast("cuda", dtype=torch.bfloat16)
         return contextlib.nullcontext()

@@ -1,5 +1,5 @@
-"""What changes in the course of a run: schedules of its settings, by the share of the run that is done, 0 to 1,
-and the pace that is measured."""
+"""What changes in the course of a run: settings that are scheduled by the share of the run that is
+done, 0 to 1, and the learning rate that is paced by measurement."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def teacher_weight_at(settings: Settings, progress: float) -> float:
 
 
 def log_std_limit_at(settings: Settings, progress: float) -> float:
-    """The most that a parameter of `log_std` may be."""
+    """The upper limit of the parameters of `log_std`."""
     if settings.final_log_std >= 2.0:
         return 2.0
     return _between(settings.initial_log_std, settings.final_log_std, (progress - 0.2) / 0.8)
@@ -35,14 +35,14 @@ def _between(start: float, end: float, progress: float) -> float:
 
 
 class PacedRate:
-    """The share of the scheduled learning rate that keeps the divergence of an update, which grows with
-    the square of the rate, at `target_kl`: PPO's adaptive penalty (Schulman et al. 2017, section 4)
-    with the rate in the penalty's place. Precise policies need it most: the less noise they act with,
-    the further a step of the same length leads away. The divergence of an update is the mean over its
-    mini-batches of what it was before each one's step: 0 before the first."""
+    """Adapts the share of the scheduled learning rate to keep the divergence of an update, which
+    grows with the square of the rate, at `target_kl`. This is PPO's adaptive penalty (Schulman et
+    al. 2017, section 4), with the rate in place of the penalty. Precise policies need it most: the
+    less noise they act with, the more a step of the same length changes them. The divergence of an
+    update is measured before the step of each mini-batch (0 before the first), and averaged."""
 
     FIRST = 0.01
-    """Adam's first steps are the longest it makes, and may lead a trained policy far away."""
+    """The share at the start: Adam's first steps are its longest, and may ruin a trained policy."""
     LEAST = 1e-3
 
     def __init__(self, target_kl: float):
@@ -50,7 +50,8 @@ class PacedRate:
         self.share = 1.0 if target_kl == 0.0 else self.FIRST
 
     def follow(self, kl: float) -> None:
-        """After an update of divergence `kl`. Falls at once, rises slowly."""
+        """Adapts the share after an update of divergence `kl`. It falls quickly and rises
+        slowly."""
         if self.target_kl == 0.0 or not math.isfinite(kl):
             return
         wanted = math.sqrt(self.target_kl / max(kl, 1e-12))

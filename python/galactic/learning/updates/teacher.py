@@ -1,5 +1,6 @@
-"""A policy that another one learns from, which sees less: kickstarting (Schmitt et al. 2018), with a
-teacher that knows what no robot has, such as the way (Chen et al. 2019)."""
+"""A teacher: a policy from which another one, which sees less, learns. This is kickstarting
+(Schmitt et al. 2018), with a teacher that knows what no robot can measure, such as the way to the
+goal (Chen et al. 2019)."""
 
 from __future__ import annotations
 
@@ -17,11 +18,13 @@ from galactic.learning.saving.checkpoint import SavedPolicy
 
 
 class Teacher:
-    """Says what it would do where the learner is. It never acts, and does not learn."""
+    """Computes what the teacher would do in the learner's place. The teacher never acts, and does
+    not learn."""
 
     def __init__(self, saved: SavedPolicy, file: pathlib.Path, observed: Observed, group: Group):
-        """`file`: where it was saved, for messages. All ranks make one; the first one's counts. Raises
-        CheckpointError where it could not play in the run."""
+        """`file`: the teacher's file, for messages. All ranks make a Teacher; the first rank's
+        weights are used everywhere. Raises CheckpointError if the teacher could not act in the
+        run."""
         remedy = "give another --teacher"
         if saved.settings.network != "state" or saved.policy.hidden_size:
             has = "a memory" if saved.settings.network == "state" else "a camera"
@@ -32,13 +35,13 @@ class Teacher:
         hiding = " and keep it from the policy with --critic-only"
         columns = columns_of(saved, file, observed, remedy, hiding)
         self._policy = saved.policy.to(group.device).eval()
-        # The file may have been replaced between two ranks.
+        # The file may have been replaced between the reads of two ranks.
         for tensor in self._policy.state_dict().values():
             group.copy_from_first(tensor)
         self._columns = torch.tensor(columns, device=group.device)
 
     @torch.no_grad()
     def actions(self, rollout: Rollout) -> ActionDistribution:
-        """What it would have done in each step, of shape [T, N]."""
+        """What the teacher would have done in each step, of shape [T, N]."""
         seen = rollout.state[: rollout.steps].index_select(-1, self._columns)
         return self._policy.act(Inputs(seen), None, rollout.starts[: rollout.steps]).actions
