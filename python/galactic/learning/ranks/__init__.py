@@ -1,1 +1,1 @@
-"""Several processes that train together. Start reading at `distributed.py`."""
+"""Processes that train one policy together. Start reading at `distributed.py`."""

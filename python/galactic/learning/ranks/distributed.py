@@ -1,4 +1,4 @@
-"""The processes that train one policy together: sums over ranks, and who waits for whom."""
+"""The processes that train one policy together: sums over ranks, and which ranks wait for which."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from galactic.learning.refusals import CheckpointError, SettingsError
 
 
 class RankLost(Exception):
-    """Another rank has ended: what it said is above."""
+    """Another rank has ended; it has printed why."""
 
 
 def cuda_devices() -> int:
-    """How many torch has."""
+    """The number of CUDA devices that torch can use."""
     return torch.cuda.device_count() if torch.cuda.is_available() else 0
 
 
 def device_of(
     name: str, local_rank: int, local_ranks: int, *, is_dealt: bool = False
 ) -> torch.device:
-    """Where the networks of a rank run, one of so many on this machine: on a CUDA device of its own, or
-    on the processor. `name`: cpu, cuda, or auto, which takes CUDA devices if there is one for each rank.
-    `is_dealt`: each rank sees one device alone, which no other rank sees (devices_are_dealt()).
-    SettingsError where cuda asks for more than torch has."""
+    """The device for the networks of a rank, one of `local_ranks` on this machine: a CUDA device of
+    its own, or the processor. `name`: cpu, cuda, or auto, which takes CUDA devices if there is one
+    for each rank. `is_dealt`: each rank sees exactly one device, which no other rank sees
+    (devices_are_dealt()). Raises SettingsError if `name` is cuda and torch has too few devices."""
     devices = cuda_devices()
     if name != "cpu" and is_dealt:
         return torch.device("cuda", 0)
@@ -54,8 +54,8 @@ def device_of(
 
 
 def devices_are_dealt(store: torch.distributed.Store, rank: int, size: int) -> bool:
-    """Whether each of the ranks sees one CUDA device alone, and each another one, as SLURM's --gpus-per-task
-    and CUDA_VISIBLE_DEVICES have it. All of them ask at the same time."""
+    """Whether each rank sees exactly one CUDA device, and each a different one, as with SLURM's
+    --gpus-per-task and CUDA_VISIBLE_DEVICES. All ranks must call this together."""
     own = f"{socket.gethostname()} {_uuid_of_first()}" if cuda_devices() == 1 else ""
     store.set(f"device/{rank}", own)
     seen = [store.get(f"device/{other}").decode() for other in range(size)]
@@ -63,30 +63,33 @@ def devices_are_dealt(store: torch.distributed.Store, rank: int, size: int) -> b
 
 
 def _uuid_of_first() -> str:
-    """Of the first device that CUDA's driver shows this process: torch 1.13 does not tell it."""
+    """The UUID of the first device that CUDA's driver shows to this process. Torch 1.13 does not
+    provide it."""
     try:
         driver = ctypes.CDLL("libcuda.so.1")
-    except OSError:  # such as where torch's devices are others than NVIDIA's
+    except OSError:  # for example, if torch's devices are not NVIDIA's
         return "unknown"
     device, uuid = ctypes.c_int(), ctypes.create_string_buffer(16)
-    # The second version tells parts of a device apart.
+    # The second version distinguishes the parts of a partitioned device.
     ask = getattr(driver, "cuDeviceGetUuid_v2", driver.cuDeviceGetUuid)
     failed = driver.cuInit(0) or driver.cuDeviceGet(ctypes.byref(device), 0) or ask(uuid, device)
     return "unknown" if failed else uuid.raw.hex()
 
 
 def local_ranks() -> int:
-    """How many ranks of the run are on this machine."""
+    """The number of ranks of the run on this machine."""
     return int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
 
 
 def threads_of(wanted: int, local_ranks: int) -> int:
-    """Of one rank; 0: its share of the processors that this process may use."""
+    """The number of threads of one rank: `wanted`, or if that is 0, its share of the processors
+    that this process may use."""
     return wanted or max(1, len(os.sched_getaffinity(0)) // local_ranks)
 
 
 def where_words(group: Group, drawn_by: str | None) -> str:
-    """Where networks run and what draws the images, for a line at the start of a run: in the rank that tells it."""
+    """A line for the start of a run: where the networks of this rank run, and what draws its
+    images."""
     if group.device.type == "cuda":
         place = f"{group.device} ({torch.cuda.get_device_name(group.device)})"
     else:
@@ -101,7 +104,7 @@ def where_words(group: Group, drawn_by: str | None) -> str:
 
 
 class Group:
-    """All ranks of a run; of one process alone, every sum is what it was.
+    """All ranks of a run. With a single process, sums leave their tensors as they are.
 
     Started by torchrun (`python3 -m torch.distributed.run`), a process finds its rank in the
     environment, and join() connects it: gloo between processors, NCCL between GPUs.
@@ -112,17 +115,17 @@ class Group:
         self.size = size
         self.device = device
         self._store: torch.distributed.Store | None = None
-        # How many steps of together() are over.
+        # The number of steps of together() that are over.
         self._steps = 0
 
     @classmethod
     def alone(cls, device: torch.device | None = None) -> Group:
-        """The only process there is."""
+        """The group of a single process."""
         return cls(0, 1, device or torch.device("cpu"))
 
     @classmethod
     def join(cls, device: str = "auto") -> Group:
-        """The group that the environment describes. `device`: as device_of() takes it."""
+        """Joins the group that the environment describes. `device`: as in device_of()."""
         size = int(os.environ.get("WORLD_SIZE", "1"))
         rank = int(os.environ.get("RANK", "0"))
         local_rank = int(os.environ.get("LOCAL_RANK", "0"))
@@ -153,14 +156,15 @@ class Group:
             torch.distributed.destroy_process_group()
 
     def sum(self, tensor: Tensor) -> Tensor:
-        """Adds up `tensor` over all ranks, in place; all get the same bits. Returns it."""
+        """Adds up `tensor` over all ranks, in place; all ranks get the same bits. Returns
+        `tensor`."""
         if self.size > 1:
             with _others():
                 torch.distributed.all_reduce(tensor)
         return tensor
 
     def copy_from_first(self, tensor: Tensor) -> None:
-        """Gives every rank the first one's `tensor`, in place."""
+        """Copies the first rank's `tensor` to all ranks, in place."""
         if self.size > 1:
             with _others():
                 torch.distributed.broadcast(tensor, 0)
@@ -172,13 +176,14 @@ class Group:
 
     @contextlib.contextmanager
     def together(self, *more: type[Exception]) -> Iterator[None]:
-        """Around a step of all ranks, of which each does its part, or nothing: none of them goes on before all have
-        come to its end. What is refused in one of them is raised on all, of several the first rank's: it is then one
-        sentence and one exit code, and nobody waits for a rank that has ended.
+        """A context for a step of all ranks, in which each does its part, or nothing. No rank
+        leaves it before all have reached its end. An error in one rank is raised on all; if there
+        are several, the lowest rank's is. So there is one message and one exit code, and no rank
+        waits for one that has ended.
 
-        No sum and no copy_from_first() may be within: a rank that is refused something would not come to it. What else
-        is raised, also by code of the user's, is that rank's own, and the others meet RankLost. `more`: kinds of
-        exceptions that are shared, too.
+        Sums and copy_from_first() are not allowed within: a rank that fails would not reach them.
+        Only SettingsError, CheckpointError, Error and the types `more` are shared. Any other
+        exception, such as from user code, ends its own rank, and the others raise RankLost.
         """
         shared: tuple[type[Exception], ...] = (SettingsError, CheckpointError, Error, *more)
         fault: Exception | None = None
@@ -191,32 +196,35 @@ class Group:
                 raise one
 
     def _faults(self, own: Exception | None) -> list[Exception | None]:
-        """Those of all ranks in the step that they end, in their order."""
+        """The errors of all ranks in the step that they are ending, in the order of ranks."""
         if self._store is None:
             return [own]
-        # A rank may be at the end of the next step before another one has read what was said at that of this one.
+        # Keys are numbered: a rank may end the next step before another has read the errors of this
+        # one.
         step, self._steps = self._steps, self._steps + 1
         self._store.set(_fault(step, self.rank), pickle.dumps(own).hex())
         try:
             self.wait_for_all()
             return self._said_by_all(self._store, step)
         except RankLost as lost:
-            # One that knows of an error ends at once, perhaps before the others have met it.
+            # A rank that learns of an error ends at once, perhaps before the others have passed the
+            # barrier.
             with contextlib.suppress(RankLost):
                 return [*self._said_by_all(self._store, step), lost]
             return [own, lost]
 
     def _said_by_all(self, store: torch.distributed.Store, step: int) -> list[Exception | None]:
-        """The fault of each rank, in their order. RankLost where one has said nothing and says nothing."""
+        """The error of each rank, in the order of ranks. Raises RankLost if a rank does not report
+        within seconds."""
         keys = [_fault(step, rank) for rank in range(self.size)]
         with _others():
             store.wait(keys, datetime.timedelta(seconds=5))
             return [pickle.loads(bytes.fromhex(store.get(key).decode())) for key in keys]
 
     def may_tell(self, error: BaseException) -> bool:
-        """Whether this rank tells its user of `error`: what all of them find out is told once, and that
-        another rank has ended only where none has told why. True where the others cannot be asked.
-        """
+        """Whether this rank should print `error`. An error that several ranks have is printed once;
+        that another rank has ended is printed only if no rank has printed anything. True if the
+        other ranks cannot be reached."""
         if self._store is None:
             return True
         key = "told/" + hashlib.sha256(str(error).encode()).hexdigest()
@@ -232,7 +240,7 @@ class Group:
 
 @contextlib.contextmanager
 def _others() -> Iterator[None]:
-    """Around what all ranks do together."""
+    """A context for collective operations; turns their failure into RankLost."""
     try:
         yield
     except RuntimeError as error:
@@ -246,34 +254,34 @@ def _fault(step: int, rank: int) -> str:
 class Stragglers:
     """Ends the rollouts of slow ranks early, so that fast ones need not wait (DD-PPO, section 3).
 
-    When `sync_fraction` of the ranks have finished their rollout, the others stop where they are and
-    go on to the update with what they have, but not before `shortest` of their rollout. A fraction of
-    1, or a rank alone, waits for all.
+    When `sync_fraction` of the ranks have finished their rollout, the others stop where they are
+    and go on to the update with what they have, but not before the share `shortest` of their
+    rollout is done. With a fraction of 1, or a single rank, no rollout is cut short.
     """
 
     def __init__(self, store: torch.distributed.Store | None, rank: int, size: int,
                  sync_fraction: float, shortest: float):  # fmt: skip
         self._store = store if sync_fraction < 1.0 else None
         self._rank = rank
-        # What is lost in a product such as 0.07 * 100 is no rank more.
+        # The rounding error of a product such as 0.07 * 100 must not add a rank.
         self._enough = max(1, math.ceil(sync_fraction * size - 1e-9))
         self._shortest = shortest
 
     def should_stop(self, update: int, step: int, horizon: int) -> bool:
-        """Whether the rollout of `update` ends after `step` of `horizon` steps."""
-        # A look at the store is a trip over the network: sixteen for each rollout are enough.
+        """Whether to end the rollout of `update` after `step` of `horizon` steps."""
+        # Reading the store is a network round trip, so do that only sixteen times per rollout.
         every = max(1, horizon // 16)
         if self._store is None or step % every or step < self._shortest * horizon:
             return False
         return self._store.add(_done(update), 0) >= self._enough
 
     def finished(self, update: int) -> None:
-        """Tells the others that this rank's rollout has its full length."""
+        """Tells the other ranks that this rank's rollout is complete."""
         if self._store is not None:
             self._store.add(_done(update), 1)
 
     def forget(self, update: int) -> None:
-        """Frees what the store knows of an update that all ranks have left behind."""
+        """Deletes the store's counter of an update that all ranks have completed."""
         if self._store is not None and self._rank == 0:
             self._store.delete_key(_done(update))
 

@@ -1,4 +1,4 @@
-"""What each rank of a run does, from the world that it opens to the last line that it says."""
+"""What each rank of a run does, from opening the world to printing the last line."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from galactic.learning.user_code.own_networks import OwnNetwork
 
 
 class _Parts(NamedTuple):
-    """What a run learns from, as one rank has it."""
+    """What one rank needs to train."""
 
     envs: Homes
     validation: Validation | None
@@ -38,8 +38,8 @@ class _Parts(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class Job:
-    """What the ranks of a run are to do. `notes`: lines to begin a new run with. `make_log` is the first rank's alone,
-    `make_callback` is known to all."""
+    """What the ranks of a run are to do. `notes`: lines to print at the beginning of a new run.
+    Only the first rank has `make_log`; all ranks have `make_callback`."""
 
     run: Run
     folder: pathlib.Path
@@ -51,13 +51,14 @@ class Job:
 
 
 def train_in_rank(job: Job, group: Group) -> int:
-    """Trains, as one of the ranks. All of them take the same steps in the same order; what is refused in one of them
-    before it learns ends all, and nothing of the run is in its folder before the last of these steps. Returns the exit
-    code."""
+    """Trains as one of the ranks. All ranks take the same steps in the same order. An error in one
+    of them before training begins ends all of them, and nothing is written into the run's folder
+    before the last of these steps. Returns the exit code."""
     with group.together():
         parts = _parts_of(job, group)
     trainer = _trainer_of(job, group, parts)
-    # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
+    # No rank writes to the folder before all have checked it for a run and have loaded what they
+    # need.
     group.wait_for_all()
     with contextlib.ExitStack() as held:
         with group.together(OSError):
@@ -81,7 +82,7 @@ def train_in_rank(job: Job, group: Group) -> int:
 
 
 def _parts_of(job: Job, group: Group) -> _Parts:
-    """Opens what the run names. Settles how many threads there are, too."""
+    """Opens what the run names, and sets the number of threads."""
     run, settings = job.run, job.run.settings
     threads = threads_of(settings.simulation_threads, local_ranks())
     sharing = 1 if settings.network == "state" else 0
@@ -89,7 +90,7 @@ def _parts_of(job: Job, group: Group) -> _Parts:
     kept = job.folder if job.resumes else None
     task, network = task_of(run, kept), network_of(run, kept)
     shown = Demonstrations(*run.demonstrations) if run.demonstrations else None
-    # Of those in which nobody acts, one is enough.
+    # With demonstrations, nobody acts in the envs, so one per half is enough.
     played = (
         dataclasses.replace(settings, envs=settings.halves, mini_batches=1) if shown else settings
     )
@@ -109,7 +110,7 @@ def _parts_of(job: Job, group: Group) -> _Parts:
 def _teacher_of(
     run: Run, kept: pathlib.Path | None
 ) -> tuple[checkpoint.SavedPolicy, pathlib.Path] | None:
-    """The teacher and its file: the copy that the run has `kept` in its folder, with which it is resumed."""
+    """The teacher and its file. A resumed run reads the copy in its folder `kept`."""
     if run.teacher is None:
         return None
     file, remedy = run.teacher, ""
@@ -138,7 +139,8 @@ def _trainer_of(job: Job, group: Group, parts: _Parts) -> Trainer:
 
 
 def _begin_callback(job: Job, trainer: Trainer) -> None:
-    """Lets code of the user's look on, in the first rank, and all ranks know of it."""
+    """Sets the callback: the user's code in the first rank, and a stand-in in the others, so that
+    all ranks take the same steps."""
     if job.make_callback is None:
         return
     if trainer.group.rank == 0:
@@ -148,7 +150,7 @@ def _begin_callback(job: Job, trainer: Trainer) -> None:
 
 
 def _begin_log(job: Job, trainer: Trainer, held: contextlib.ExitStack) -> None:
-    """Lets a function of the user's take the curves, while `held` is."""
+    """Passes rows of the curves to the user's function until `held` is closed."""
     if job.make_log is None:
         return
     take = job.make_log(job.folder, trainer.settings.to_dict())
@@ -157,7 +159,7 @@ def _begin_log(job: Job, trainer: Trainer, held: contextlib.ExitStack) -> None:
 
 
 def _carry_out(job: Job, trainer: Trainer) -> bool:
-    """Trains as far as it is asked for. Returns whether no signal has left something to do."""
+    """Trains as far as requested. Returns whether no signal cut it off."""
     say = trainer.reports.progress.say
     if job.resumes:
         say(f"going on after {trainer.steps:,} steps")
@@ -171,7 +173,7 @@ def _carry_out(job: Job, trainer: Trainer) -> bool:
 
 
 def _tell_end(job: Job, trainer: Trainer, undisturbed: bool) -> int:
-    """Where the run is, and how it goes on. Returns the exit code."""
+    """Prints where the results are, or how to continue. Returns the exit code."""
     say = trainer.reports.progress.say
     if trainer.steps < trainer.settings.steps or not undisturbed:
         say(
@@ -185,7 +187,7 @@ def _tell_end(job: Job, trainer: Trainer, undisturbed: bool) -> int:
 
 
 def _tell_of_no_export(trainer: Trainer) -> None:
-    """Of a network that learns for hours and cannot become a pack, before it does."""
+    """Warns, before hours of training, of a network that cannot become a pack."""
     fault = content.fault_of(trainer.policy)
     if fault:
         trainer.reports.progress.say(

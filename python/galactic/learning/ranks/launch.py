@@ -1,10 +1,10 @@
-"""Starts the ranks of a run on this machine, be it one: what torchrun does, for one machine.
+"""Starts the ranks of a run on this machine, even if there is only one, as torchrun does.
 
-Debian 12's torchrun does not start under Python 3.11; this does, everywhere. Across machines, torchrun
-is the way: a process that finds RANK in its environment joins the others.
+Debian 12's torchrun does not start under Python 3.11; this works everywhere. Across machines, use
+torchrun: a process that finds RANK in its environment joins the others.
 
-A rank is a process of its own even when it is alone, because the libraries that multiply read their
-environment when they are loaded.
+Even a single rank is a process of its own, because numeric libraries read their environment when
+they are loaded.
 """
 
 from __future__ import annotations
@@ -27,30 +27,31 @@ from galactic.interrupts import INTERRUPTED
 from galactic.streams import put
 
 LAUNCHER = "GALACTIC_LAUNCHER"
-"""The environment variable with the process id of who launched a rank."""
+"""The environment variable with the process id of a rank's launcher."""
 
 GRACE = 30.0
-"""Seconds that the other ranks have when one has failed, before they are killed."""
+"""Seconds that the other ranks have to end after one has failed, before they are killed."""
 
 HURRY = 10.0
-"""Seconds that ranks have after a second Ctrl-C, which ends them without saving, before they are killed."""
+"""Seconds that ranks have to end after a second Ctrl-C, which ends them without saving, before they
+are killed."""
 
 _INTERNAL = int(galactic.ErrorCode.INTERNAL)
 
 
 def launch(ranks: int, command: Sequence[str]) -> int:
     """Runs `command` in `ranks` processes that find each other by torch.distributed's environment
-    variables, and waits for them. Returns the code of the one that failed, else 0. Interrupts reach
-    the ranks, which end as they see fit, and a terminal that closes asks them to end. Those that do not, being stuck,
-    are killed: see _PassedOn. Ctrl-Z stops them, too, until this process goes on. Raises galactic.Error where another
-    signal has ended a rank, which could not say so itself. Ranks that call follow_launcher() do not outlive this
-    process, whatever ends it."""
+    variables, and waits for them. Returns the exit code of the rank that failed, or 0. Interrupts
+    are passed on to the ranks, which end in their own way; a terminal that closes asks them to end.
+    Ranks that are stuck are killed: see _PassedOn. Ctrl-Z stops the ranks, too, until this process
+    continues. Raises galactic.Error if any other signal ended a rank, which could not report that
+    itself. Ranks that call follow_launcher() do not outlive this process, whatever ends it."""
     store = torch.distributed.TCPStore("127.0.0.1", 0, is_master=True, wait_for_workers=False)
     environment = {
         **os.environ,
         "MASTER_ADDR": "127.0.0.1",
         "MASTER_PORT": str(store.port),
-        # The store is there already: no rank has to be its server.
+        # This process serves the store, so no rank has to.
         "TORCHELASTIC_USE_AGENT_STORE": "True",
         "TORCHELASTIC_RESTART_COUNT": "0",
         "WORLD_SIZE": str(ranks),
@@ -63,13 +64,14 @@ def launch(ranks: int, command: Sequence[str]) -> int:
         try:
             for rank in range(ranks):
                 own = {**environment, "RANK": str(rank), "LOCAL_RANK": str(rank)}
-                # Away from the terminal's group: an interrupt comes from here, once.
+                # Outside the terminal's process group, so that each interrupt arrives once, from
+                # here.
                 with interrupts.held_back():
                     processes.append(subprocess.Popen(command, env=own, start_new_session=True))
             signals.all_have_started()
             rank, code = _wait(processes, signals)
         except BaseException:
-            # Those that have started would wait for the others.
+            # The ranks that have started would wait for the others.
             for process in processes:
                 process.kill()
             raise
@@ -80,27 +82,28 @@ def launch(ranks: int, command: Sequence[str]) -> int:
 
 
 def follow_launcher() -> None:
-    """Ends this rank when its launcher does: killed, that cannot end its ranks itself. Does nothing in a
-    rank of torchrun, which sees to its own."""
+    """Ends this rank when its launcher ends: a launcher that is killed cannot end its ranks itself.
+    Does nothing under torchrun, which ends its own ranks."""
     launcher = os.environ.get(LAUNCHER)
     if launcher is None:
         return
     set_parent_death_signal = 1  # PR_SET_PDEATHSIG of Linux
     ctypes.CDLL(None).prctl(set_parent_death_signal, int(signal.SIGKILL), 0, 0, 0)
     if os.getppid() != int(launcher):
-        # It was over before.
+        # The launcher ended before the call of prctl().
         os.kill(os.getpid(), signal.SIGKILL)
 
 
 class _PassedOn:
-    """While in force, signals reach the ranks, also those that come before all of them have started.
+    """Within this context, signals are passed on to the ranks, even signals that arrive before all
+    ranks have started.
 
-    Ranks end as they see fit, and have all the time that they need to save, however often SIGTERM comes: systemd and
-    Slurm repeat it, and kill them at last. Those that are stuck are killed by Ctrl-C: HURRY after a second one, at
-    once with a third one.
+    Ranks end in their own way, and have as much time as they need to save, however often SIGTERM
+    arrives: systemd and Slurm repeat it, and finally kill the processes themselves. Ctrl-C kills
+    ranks that are stuck: HURRY seconds after the second one, or at once with the third.
     """
 
-    # A rank has no terminal that could close.
+    # Ranks receive SIGTERM for SIGHUP, as they have no terminal.
     _AS = {
         signal.SIGINT: signal.SIGINT,
         signal.SIGTERM: signal.SIGTERM,
@@ -115,14 +118,14 @@ class _PassedOn:
         self._was_asked = False
         self._deadline = float("inf")
         self.have_killed = False
-        """Whether ranks were killed that did not end."""
+        """Whether ranks that did not end were killed."""
 
     def __enter__(self) -> _PassedOn:
         for number in self._AS:
-            # nohup ignores what a terminal says when it closes.
+            # Under nohup, SIGHUP stays ignored.
             if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
                 self._before[number] = signal.signal(number, self._pass_on)
-        # Of a shell without jobs, none comes.
+        # A shell without job control ignores SIGTSTP; it stays so.
         if signal.getsignal(signal.SIGTSTP) != signal.SIG_IGN:
             self._before[signal.SIGTSTP] = signal.signal(signal.SIGTSTP, self._pause)
         return self
@@ -137,7 +140,7 @@ class _PassedOn:
             self._send(number)
 
     def kill_stuck(self) -> None:
-        """To be called now and then."""
+        """Kills the ranks if their time is over. To be called regularly."""
         if time.monotonic() > self._deadline and any(one.poll() is None for one in self._processes):
             self.have_killed = True
             self._signal(signal.SIGKILL)
@@ -148,7 +151,7 @@ class _PassedOn:
             self._deadline = time.monotonic() + (HURRY if is_second else 0.0)
         self._was_asked = True
         if number == signal.SIGHUP:
-            # The system says it, and a shell says it again; two signals would end ranks without saving.
+            # Both the system and the shell send SIGHUP; pass on only the first one.
             signal.signal(number, signal.SIG_IGN)
         if self._have_started:
             self._send(number)
@@ -156,15 +159,16 @@ class _PassedOn:
             self._early.append(number)
 
     def _pause(self, number: int, _: Any) -> None:
-        """Ranks are in no terminal's group, of which Ctrl-Z stops all, and they hold the processors."""
+        """Stops the ranks with this process. Ctrl-Z does not reach them, as they are outside the
+        terminal's process group, and they would go on using the processors."""
         self._signal(signal.SIGSTOP)
         os.kill(os.getpid(), signal.SIGSTOP)
-        # Here a SIGCONT, which the shell's fg and bg send, lets it go on.
+        # This process continues here after SIGCONT, which the shell's fg and bg send.
         self._signal(signal.SIGCONT)
 
     def _send(self, number: int) -> None:
         self._signal(self._AS[signal.Signals(number)])
-        # One that somebody has stopped could not end.
+        # A rank that was stopped could not end.
         self._signal(signal.SIGCONT)
 
     def _signal(self, number: int) -> None:
@@ -174,26 +178,26 @@ class _PassedOn:
 
 
 def _ended_by(number: signal.Signals, rank: int) -> int:
-    """What there is to do about a rank that a signal has ended."""
+    """The exit code, or the error to raise, for a rank that a signal has ended."""
     if number in (signal.SIGINT, signal.SIGTERM):
         return INTERRUPTED
     code, advice = galactic.ErrorCode.INTERNAL, "please report it"
     if number == signal.SIGKILL:
-        # As a lack of memory that the rank could have told.
+        # The same code as if the rank had reported the lack of memory itself.
         code = galactic.ErrorCode.UNSUPPORTED
         advice = "the system does that where memory is lacking: take fewer --envs or --ranks"
     raise galactic.Error(code, f"rank {rank}", f"was ended by {number.name}; {advice}")
 
 
 def _of_libraries() -> dict[str, str]:
-    """What the libraries that multiply and the one that allocates should know, where the environment does
-    not say it already.
+    """Environment variables for the numeric libraries and the allocator, without those that are
+    already set.
 
-    OpenBLAS 0.3.21 takes processors that are younger than it for Haswell, and leaves the wider half of
-    their registers idle: with AVX-512, naming a core that has it doubles the speed. Threads that wait
-    for a share of the work sleep, instead of taking the processor from those that have some. Memory that
-    tensors leave stays for the next ones: what glibc gives back to the system comes again page by page,
-    each of them cleared, which took a third of an update with images.
+    OpenBLAS 0.3.21 takes processors newer than itself for Haswell, and uses only half the width of
+    their registers: on processors with AVX-512, naming a core that has it doubles the speed.
+    Threads that wait for work sleep, instead of taking the processor from those that have some.
+    Freed memory is kept for the next tensors: when glibc returns it to the system, it comes back
+    page by page, each of them cleared, which took a third of an update with images.
     """
     chosen = {
         "OMP_WAIT_POLICY": "passive",
@@ -209,9 +213,9 @@ def _of_libraries() -> dict[str, str]:
 
 
 def _wait(processes: Sequence[subprocess.Popen[bytes]], signals: _PassedOn) -> tuple[int, int]:
-    """Rank and code of the one that failed, a code of 0 where none has. The others learn that it is gone and fail,
-    too, perhaps before it is over: all are waited for, and those killed that take more than GRACE.
-    """
+    """The rank that failed and its exit code; the code is 0 if none failed. The other ranks notice
+    the failure and fail, too, perhaps even before the failed rank has ended. So this waits for all,
+    and kills those that take longer than GRACE seconds."""
     killed: set[int] = set()
     deadline = float("inf")
     while True:
@@ -230,8 +234,9 @@ def _wait(processes: Sequence[subprocess.Popen[bytes]], signals: _PassedOn) -> t
 
 
 def _failure(codes: Mapping[int, int]) -> tuple[int, int]:
-    """Rank and code, of those of ranks that have ended by themselves. What a signal has ended is what the others
-    noticed, and says most. Code 4 says least: ranks that have lost another one have it, too."""
+    """The rank and code that best explain a failure, among ranks that ended by themselves. A rank
+    ended by a signal comes first, as the others only reacted to it. Code 4 comes last, as ranks
+    that lost another one return it, too."""
     failed = [(code == _INTERNAL, code, rank) for rank, code in codes.items() if code != 0]
     _, code, rank = min(failed, default=(False, 0, 0))
     return rank, code
