@@ -1,1 +1,2 @@
-"""Episodes are played, each once: to judge policies, and to show what an expert does. Start reading at `evaluation.py`."""
+"""Plays episodes, each exactly once: to judge policies, and to record demonstrations. Start reading
+at `evaluation.py`."""

@@ -1,4 +1,5 @@
-"""Demonstrations in the making: their folder, the parts of it that are missing, and policies that play in their homes."""
+"""Makes demonstrations: begins their folder, plays the parts that are missing, and loads policies
+that act as experts."""
 
 from __future__ import annotations
 
@@ -30,7 +31,8 @@ from galactic.learning.user_code import own_networks
 
 
 def begin(folder: pathlib.Path, about: About) -> None:
-    """Says what the demonstrations are, if nobody has yet, and that they are these if somebody has."""
+    """Writes the index that describes the demonstrations, or checks that the existing one describes
+    the same."""
     file = folder / demonstrations.INDEX
     if not file.exists():
         if demonstrations.parts_in(folder):
@@ -51,10 +53,10 @@ def begin(folder: pathlib.Path, about: About) -> None:
 
 
 def _difference(found: About, wanted: About) -> str:
-    """The first thing that they do not have in common."""
+    """The first difference between two descriptions."""
     ones, others = dataclasses.asdict(found), dataclasses.asdict(wanted)
     for made in (ones, others):
-        # Those of the settings say more.
+        # The settings, compared by name below, give clearer messages.
         del made["options"], made["camera"]
         made.update(made.pop("made_with"))
         made.update(made.pop("settings", {}))
@@ -67,7 +69,7 @@ def _difference(found: About, wanted: About) -> str:
 
 def make_parts(folder: pathlib.Path, parts: list[list[int]], homes: Homes, expert: Expert, seed: int,
                progress: ProgressLine) -> None:  # fmt: skip
-    """Has the parts played that are missing."""
+    """Plays and writes the parts that are missing."""
     begun, evaluator = time.monotonic(), Evaluator(homes, expert)
     missing = [
         (number, episodes)
@@ -77,7 +79,7 @@ def make_parts(folder: pathlib.Path, parts: list[list[int]], homes: Homes, exper
     endings = Demonstrations(folder).endings
     solved, played = int((endings == galactic.EpisodeEnd.SUCCESS).sum()), len(endings)
     for count, (number, episodes) in enumerate(missing):
-        # Its noise does not depend on which parts were made before it.
+        # The noise of a part must not depend on which parts were made before it.
         homes.restart(int(hashed(seed, np.array(number), np.array(0), 1)[0] >> np.uint64(32)))
         recorder = Recorder(expert, homes)
         results = evaluator.play(episodes, details=False, observer=recorder)
@@ -94,7 +96,7 @@ def make_parts(folder: pathlib.Path, parts: list[list[int]], homes: Homes, exper
 
 def acting(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: bool,
            device: torch.device) -> Actor:  # fmt: skip
-    """The policy of a file, that plays in these homes, on this device."""
+    """The policy in a file, ready to act in these homes, on this device."""
     own = own_networks.own_network(settings.network) if settings.has_own_network else None
     saved = checkpoint.load_policy(file, network=own)
     _require_sight(saved, file, settings)
@@ -110,7 +112,7 @@ def acting(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: 
 
 
 def _require_sight(saved: SavedPolicy, file: pathlib.Path, settings: Settings) -> None:
-    """Raises CheckpointError where a policy that sees images would see others here."""
+    """Raises CheckpointError if a policy that sees images would see different ones here."""
     needed = saved.settings.sight
     if set(needed) - set(settings.sight):
         seeing = f" --sees {saved.settings.sees}" if saved.settings.has_own_network else ""

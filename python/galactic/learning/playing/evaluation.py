@@ -1,4 +1,4 @@
-"""How well a policy does: each episode of a world, exactly once."""
+"""Evaluates a policy: plays each episode of a world exactly once."""
 
 from __future__ import annotations
 
@@ -24,11 +24,13 @@ MOST_ENVS = 256
 
 @dataclass
 class EpisodeResult:
-    """One episode. `picked`: whether the target has been in the hand. `path`: meters that the base went over the floor, but for the last step; `straight`:
-    the length of the straight lines from where it started to where it first held something, and on to
-    where it was last seen: no path by these places is shorter. `refused`, `slid`: steps in which the
-    robot stayed where it was, or was pushed clear, because it would have hit something. `measures`: what
-    a task of one's own says of it; `logs`: the means of what it says of each step."""
+    """The result of one episode. `picked`: whether the target was in the hand at any time. `path`:
+    how far the base moved over the floor, meters, without the last step. `straight`: the length of
+    the straight lines from its start to where the robot first held something, and on to its last
+    known place; no path through these places is shorter. `refused`, `slid`: steps in which the
+    robot stayed where it was, or was pushed clear, because it would have hit something. `measures`:
+    what a user-defined task measures of the episode. `logs`: means of what such a task logs in each
+    step."""
 
     episode: int
     success: bool
@@ -45,28 +47,29 @@ class EpisodeResult:
 
     @property
     def path_ratio(self) -> float:
-        """Success weighted by path length, of one episode: 1 for the straight way, 0 for a failure."""
+        """Success weighted by path length, for one episode: 1 for the straight path, 0 for a
+        failure."""
         if not self.success:
             return 0.0
         return self.straight / max(self.path, self.straight) if self.path > 0.0 else 1.0
 
 
 class Player(Protocol):
-    """Who plays episodes, in many envs at a time."""
+    """Something that plays episodes, in many envs at a time."""
 
     def begin(self, envs: int) -> None:
-        """Forgets all, and acts in so many envs from now on."""
+        """Forgets everything, and prepares to act in `envs` envs."""
 
     def act(
         self, seen: Observation, starts: np.ndarray, episodes: np.ndarray, steps: np.ndarray
     ) -> np.ndarray:
-        """What to do in each env: float32 [n, motions + 2].
+        """The action for each env: float32 [n, motions + 2].
 
         Args:
             seen: rows of all envs.
             starts: bool [n], where an episode begins.
-            episodes: int [n], which episode each env plays; NO_EPISODE where what it does counts nowhere.
-            steps: int [n], how many steps it has done.
+            episodes: int [n], which episode each env plays; NO_EPISODE where the actions do not
+            count. steps: int [n], how many steps of its episode each env has done.
         """
 
 
@@ -74,19 +77,20 @@ NO_EPISODE = -1
 
 
 class StepObserver(Protocol):
-    """Who looks on while episodes are played."""
+    """Something that observes how episodes are played."""
 
     def before_step(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
-        """Before each step: what Player.act() was told, and what it said. Only for the time of the call."""
+        """Called before each step, with arguments and result of Player.act(). They are valid only
+        during the call."""
 
     def after_step(self, step: Step) -> None:
-        """After it: what came of it."""
+        """Called after each step, with its results."""
 
 
 class Actor:
-    """A policy that acts and does not learn, with its memory of each env: a Player. Its samples depend on
-    seed, episode and step, not on where an episode is played. `device` is the policy's. `columns` are those
-    of a row of observations that it sees; None: all."""
+    """A Player: a policy that acts without learning, with its memory of each env. Its samples
+    depend on seed, episode and step, not on the env in which an episode is played. `device` is the
+    policy's. `columns` are the columns of an observed row that the policy sees; None: all."""
 
     def __init__(self, policy: Policy, *, deterministic: bool, seed: int = 1,
                  device: torch.device = torch.device("cpu"),
@@ -128,13 +132,14 @@ class Actor:
             return actions[0].cpu().numpy()
 
     def override_actions(self, actions: np.ndarray) -> None:
-        """That these were done in the last step, float32 [n, motions + 2], where others have acted."""
+        """Tells the policy which actions were executed in the last step, float32 [n, motions + 2],
+        if they were not all its own."""
         done = torch.from_numpy(actions).to(self._device).unsqueeze(0)
         self._previous = done.clamp(-1.0, 1.0)
 
 
 class Evaluator:
-    """Has episodes played in `homes`, of one half."""
+    """Has a player play episodes in `homes`, which must have one half."""
 
     def __init__(self, homes: Homes, player: Player):
         self._homes = homes
@@ -145,7 +150,7 @@ class Evaluator:
 
     def play(self, episodes: Sequence[int], *, details: bool = True,
              observer: StepObserver | None = None) -> list[EpisodeResult]:  # fmt: skip
-        """Has each of `episodes` played once, and returns what came of them, in their order. Without
+        """Plays each of `episodes` once, and returns their results in the same order. Without
         `details`, paths and collisions are left out, which is faster."""
         homes, waiting = self._homes, list(reversed(episodes))
         results: dict[int, EpisodeResult] = {}
@@ -175,7 +180,8 @@ class Evaluator:
         return [results[episode] for episode in episodes]
 
     def _start(self, where: np.ndarray, waiting: list[int], details: bool) -> None:
-        """Gives the next episodes to the envs `where` one ended; those without one idle on."""
+        """Begins the next waiting episodes in the envs `where` one ended; when none are left, these
+        envs idle."""
         homes, wanted = self._homes, dict[int, int]()
         for env in np.flatnonzero(where):
             self._played[env] = None
@@ -207,7 +213,7 @@ class Evaluator:
                 if details:
                     one.finish(self._homes.collisions(env))
             elif places is not None:
-                # Behind its end, the env is in the next episode.
+                # Only before the end: after it, the env is in the next episode already.
                 one.follow(places[env], bool(holds[env]))
 
 
@@ -219,13 +225,13 @@ class _Played:
         self.result = EpisodeResult(episode, False, False, "", 0.0, 0, 0.0, 0.0, 0, 0)
         self._collisions = collisions
         self._place = place
-        # Where the straight lines begin, and the length of those that are behind.
+        # Where the current straight line begins, and the length of the completed ones.
         self._corner = place
         self._behind = 0.0
         self._has_held = False
 
     def follow(self, place: np.ndarray, holds: bool) -> None:
-        """Takes in where the base is now, and whether the hand holds something."""
+        """Takes the present position of the base, and whether the hand holds something."""
         self.result.path += float(np.linalg.norm(place - self._place))
         self._place = place
         self.result.straight = self._behind + float(np.linalg.norm(place - self._corner))
@@ -234,13 +240,13 @@ class _Played:
             self._corner, self._behind = place, self.result.straight
 
     def finish(self, collisions: tuple[int, int]) -> None:
-        """Takes in what was counted until the end."""
+        """Takes the collisions counted up to the end of the episode."""
         self.result.refused = collisions[0] - self._collisions[0]
         self.result.slid = collisions[1] - self._collisions[1]
 
 
 def rows_of(homes: Homes) -> Observation:
-    """Memory for what all envs see."""
+    """Memory for the observations of all envs."""
     actions = homes.motions + 2
     return Rollout.empty(0, homes.count, homes.state_size, actions, homes.images).row(
         0, slice(None)
@@ -248,7 +254,7 @@ def rows_of(homes: Homes) -> Observation:
 
 
 def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
-    """What the curves want to know."""
+    """The sums of the results, for the curves."""
     first = results[0] if results else None
     measures, logs = (first.measures, first.logs) if first else ({}, {})
     steps = float(sum(result.length for result in results))
@@ -265,8 +271,8 @@ def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
 
 
 def summary(results: Sequence[EpisodeResult], world: galactic.World) -> dict[str, Any]:
-    """Means, counts of the endings, and every episode, with the names of its scene and of the object that
-    is to be moved: the report of galactic.evaluate."""
+    """The report of galactic.evaluate: means, counts of the endings, and every episode with the
+    names of its scene and of its target object."""
     table = world.episode_table()
     endings: dict[str, int] = {}
     for result in results:

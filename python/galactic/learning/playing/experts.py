@@ -1,4 +1,4 @@
-"""Who demonstrates, and what is kept of it."""
+"""Experts that demonstrate, and the recorder of their demonstrations."""
 
 from __future__ import annotations
 
@@ -17,17 +17,19 @@ from galactic.learning.rollouts.environments import Observation, Step
 
 
 class Expert(Player, Protocol):
-    """Whom others learn from."""
+    """A player from which others learn."""
 
     acted: np.ndarray
-    """bool [n]: in which envs it was the expert who acted last, and not who led to where it begins."""
+    """bool [n]: in which envs the expert itself acted last, and not the learner that led to where
+    the expert begins."""
 
     def override_actions(self, actions: np.ndarray) -> None:
-        """What was done in the last step, float32 [n, motions + 2], where others have acted."""
+        """Tells the expert which actions were executed in the last step, float32 [n, motions + 2],
+        if they were not all its own."""
 
 
 class ScriptedExpert:
-    """The scripted policy, which plans by all that the simulation knows."""
+    """The scripted policy, which plans with the full state of the simulation."""
 
     def __init__(self, homes: Homes):
         (self._simulator,) = homes.env.simulators
@@ -44,11 +46,11 @@ class ScriptedExpert:
         return self._policy.act(self.acted)
 
     def override_actions(self, actions: np.ndarray) -> None:
-        pass  # it looks at where that has led
+        pass  # it reads the state of the simulation anew in each step
 
 
 class LearnedExpert:
-    """A policy that has learned before."""
+    """A trained policy as an expert."""
 
     def __init__(self, policy: Actor):
         self._policy = policy
@@ -68,16 +70,16 @@ class LearnedExpert:
 
 
 class RolledIn:
-    """An expert that begins where a learner has led: the learner plays the first steps of an episode, none
-    of them or up to `most` by a hash of the episode, and the expert the rest. So it shows what to do after
-    the learner's own mistakes, which no expert makes (Ross et al. 2011; one switch in an episode: Ross and
-    Bagnell 2014)."""
+    """An expert that takes over from a learner: the learner plays the first 0 to `most` steps of an
+    episode, a number drawn by a hash of the episode, and the expert plays the rest. So the
+    demonstrations show what to do after the learner's own mistakes, which no expert makes (Ross et
+    al. 2011; one switch in an episode: Ross and Bagnell 2014)."""
 
     def __init__(self, learner: Actor, expert: Expert, most: int, seed: int):
         self._learner = learner
         self._expert = expert
         self._most = most
-        # Not the numbers that a policy's actions are sampled with.
+        # Independent of the random numbers with which a policy's actions are sampled.
         self._seed = seed ^ 0x726F6C6C
         self.acted = np.zeros(0, np.bool_)
 
@@ -104,7 +106,7 @@ class RolledIn:
 
 
 class Recorder:
-    """A StepObserver that keeps what an expert saw and did."""
+    """A StepObserver that records what an expert saw and did."""
 
     def __init__(self, expert: Expert, homes: Homes):
         self._expert = expert
@@ -120,5 +122,5 @@ class Recorder:
         self._ended |= {one.episode: one for one in ended}
 
     def demonstrations(self, results: Sequence[EpisodeResult]) -> list[Demonstration]:
-        """Those of the episodes whose results are given, in their order."""
+        """The demonstrations of the episodes with these results, in the same order."""
         return [self._ended[result.episode] for result in results]

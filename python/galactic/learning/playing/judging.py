@@ -1,5 +1,5 @@
-"""Where a policy is judged: the homes of its training in another world, with a task and with the noise that is asked
-for."""
+"""The setup in which a policy is judged: homes as in its training, but in another world, with the
+requested task and noise."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ from galactic.learning.user_code.own_tasks import MakeTask, maker
 
 @dataclasses.dataclass(frozen=True)
 class Terms:
-    """How the policy of a file is judged in the world of another one. `episodes`: the first so many, 0 for all.
-    `camera_noise`, `robot_noise`: whether with those of its training. `task`: what --task names, and what it is
-    made with; None for the simulation's."""
+    """How the policy in one file is judged in the world in another. `episodes`: how many to play,
+    from the first on, 0 for all. `camera_noise`, `robot_noise`: whether to use the noise of its
+    training. `task`, `task_options`: the values of --task and --task-options; None for the
+    simulation's task."""
 
     policy: pathlib.Path
     world: pathlib.Path
@@ -37,7 +38,7 @@ class Terms:
 
 
 class Judging(NamedTuple):
-    """What the policy plays in: homes, and what they were made of."""
+    """The homes in which the policy plays, and what they were made from."""
 
     world: galactic.World
     settings: Settings
@@ -46,8 +47,8 @@ class Judging(NamedTuple):
 
 
 def judging(saved: SavedPolicy, terms: Terms) -> Judging:
-    """Raises SettingsError for terms that nothing would come of, and CheckpointError where the policy could not
-    act in that world as it has learned to."""
+    """Prepares a judging. Raises SettingsError for terms that have no effect, and CheckpointError
+    if the policy could not act in that world as it learned to."""
     task = _task(terms, saved.settings)
     world = galactic.World(terms.world)
     settings = dataclasses.replace(
@@ -63,11 +64,11 @@ def judging(saved: SavedPolicy, terms: Terms) -> Judging:
 
 
 def _task(terms: Terms, settings: Settings) -> MakeTask | None:
-    """What makes the task that was asked for; None for the simulation's."""
+    """What makes the requested task; None for the simulation's."""
     if terms.task:
         name = own_code.named(terms.task, "--task")
         given = terms.task_options
-        # Those of the training are for its class.
+        # The options of the training apply if the class is the same.
         if given is None and str(name).rpartition(":")[2] == settings.task.rpartition(":")[2]:
             given = settings.task_options
         return maker(name, given or "", own_code.siblings_of(name))
@@ -81,7 +82,7 @@ def _task(terms: Terms, settings: Settings) -> MakeTask | None:
 
 
 def _with_noise_asked_for(terms: Terms, settings: Settings) -> Settings:
-    """With the noise of the training that was asked for, and without the other."""
+    """The settings with the requested noise of the training, and without the rest of it."""
     judged = settings
     for option, is_asked, plain, its_own in (
         (
@@ -109,7 +110,8 @@ def _with_noise_asked_for(terms: Terms, settings: Settings) -> Settings:
 
 def _homes(terms: Terms, world: galactic.World, settings: Settings,
            task: MakeTask | None) -> Homes:  # fmt: skip
-    """The homes of the policy's training. Nobody has typed their options here."""
+    """The homes of the policy's training. Errors in their options are reported as the policy's, as
+    the user did not type them here."""
     try:
         return Homes(world, settings, terms.threads, task=task, is_evaluation=True)
     except SettingsError as error:
@@ -125,7 +127,8 @@ def _homes(terms: Terms, world: galactic.World, settings: Settings,
 
 
 def _require_fit(saved: SavedPolicy, homes: Homes, terms: Terms) -> None:
-    """Raises CheckpointError where the policy observes or was trained otherwise."""
+    """Raises CheckpointError if the homes do not fit the observations or the training of the
+    policy."""
     if homes.parts != saved.parts:
         raise CheckpointError(
             f"{terms.policy} was trained on observations of {sizes_of(saved.parts)}, and "

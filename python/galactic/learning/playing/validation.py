@@ -1,4 +1,4 @@
-"""Validations: a run plays the episodes held out, now and then."""
+"""Validations: from time to time, a run plays episodes that were held out of its training."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from galactic.learning.user_code.own_tasks import MakeTask
 def validation_of(
     run: Run, trained: Homes, threads: int, group: Group, task: MakeTask | None
 ) -> Validation | None:
-    """Plays the episodes held out, this rank's share of them, with sampled actions as in training, which
-    is in the homes `trained`. Raises galactic.Error where a policy of these could not play there.
-    """
+    """A function that plays this rank's share of the held-out episodes, with sampled actions as in
+    training. `trained` are the homes of the training. Raises galactic.Error if a policy trained
+    there could not play in the validation world."""
     settings = run.settings
     if run.validation is None or not settings.validate_every:
         return None
@@ -63,7 +63,8 @@ def validation_of(
     episodes = playable[: settings.validation_episodes or None][group.rank :: group.size]
 
     def validate(policy: Policy) -> EpisodeSums:
-        # Else noise would go on where the validation before has ended, of which a resumed run knows nothing.
+        # Without this, noise would continue from the previous validation, whose state a resumed run
+        # does not have.
         homes.restart(settings.seed)
         actor = evaluation.Actor(
             policy, deterministic=False, seed=settings.seed, device=group.device
