@@ -1,4 +1,4 @@
-"""What the policy pack of a trained policy contains: docs/policies.md."""
+"""The contents of the policy pack of a trained policy: docs/policies.md."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ from galactic.learning.user_code import own_code
 
 def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "",
                   network: str | None = None) -> None:  # fmt: skip
-    """Reads the checkpoint `file` and writes the policy pack `output`. `network`: what --network names."""
+    """Reads the checkpoint `file` and writes the policy pack `output`. `network`: the value of
+    --network."""
     code = own_code.named(network, "--network").file if network is not None else None
     files.require_apart({"--out": output}, [file, *([code] if code else [])])
     saved = checkpoint.read_policy(file, network)
@@ -52,8 +53,8 @@ def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robo
 
 
 def fault_of(policy: Policy) -> str:
-    """Why the encoder of a policy cannot become layers of a pack, whatever it learns; nothing where it can. Code of the
-    user's may raise anything where it is followed, and may learn nonetheless."""
+    """Why the encoder of a policy cannot become layers of a pack, whatever its weights; "" if it
+    can. User code may raise any exception when it is traced, and can be trained nevertheless."""
     layers = Layers()
     try:
         encoded(layers, policy.encoder, layers.add("observation"))
@@ -65,8 +66,9 @@ def fault_of(policy: Policy) -> str:
 
 
 def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dict[str, Any]:
-    """A saved policy as _core.write_policy_pack() wants it. The critic is left out, with all that it alone
-    sees. Raises ExportError where it cannot become a pack, or not one that acts as it does."""
+    """A saved policy in the form that _core.write_policy_pack() takes, without the critic and
+    without what only the critic sees. Raises ExportError if the policy cannot become a pack, or if
+    the pack would act differently."""
     policy, privileges = saved.policy, saved.settings.critic_only
     observation = parts_of_actor(privileges, saved.parts)
     own = of_own_tasks(observation)
@@ -105,7 +107,8 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
 
 
 def _network_of(policy: Policy, columns: Sequence[int]) -> Network:
-    """What a pack of the policy, which observes these columns of its state, is compared with."""
+    """The network with which a pack of the policy is compared. The pack observes these columns of
+    the state."""
 
     def heads(inputs: Inputs, memory: Tensor, starts: Tensor) -> tuple[list[Tensor], Tensor]:
         if not policy.needs_previous:
@@ -135,7 +138,7 @@ def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:
         logits = layers.add("slice", rows, first=first + 2 * decision, size=2)
         if head.odds_limit > 0.0:
             logits = _limited(layers, head.odds_limit, logits)
-        # Where the task does not ask for it, nobody terminates.
+        # If the policy does not decide when to terminate, both values are 0.
         is_decided = decision + 1 < DECISIONS or head.decides_terminate
         discrete.append({"logits": logits, "values": [0.0, 1.0] if is_decided else [0.0, 0.0]})
     continuous = {"count": motions, "mean": mean, "log_deviation": log_std}
@@ -143,14 +146,16 @@ def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:
 
 
 def _limited(layers: Layers, limit: float, logits: int) -> int:
-    """The logits of no and yes whose odds stay within a limit: half of the difference each, with signs."""
+    """The logits of no and yes, with their difference limited: each gets half of it, with opposite
+    signs."""
     half = np.array([[0.5, -0.5], [-0.5, 0.5]], np.float32)
     apart = layers.add("linear", logits, outputs=2, weight=half, bias=None)
     return layers.times(0.5 * limit, layers.closeup(0.5 * limit, apart, 2), 2)
 
 
 def image_of(options: Mapping[str, Any]) -> dict[str, Any]:
-    """What a camera with these options of galactic.Renderer draws, as _core.write_policy_pack() wants it."""
+    """The image drawn with these options of galactic.Renderer, in the form that
+    _core.write_policy_pack() takes."""
     seen = {**_core.Renderer.DEFAULTS, **options}
     if stands_in_world(seen):
         raise ExportError(

@@ -1,4 +1,5 @@
-"""Modules as layers of a policy pack: our encoders by what they are made of, the user's as torch.fx follows them."""
+"""Converts encoders to layers of a policy pack: built-in ones by their known structure, the user's
+by tracing them with torch.fx."""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from galactic.learning.packs.layers import LARGEST, ExportError, Layers, compute
 from galactic.learning.sequences import run_gru
 
 PLAIN_LAYERS = "write forward() of plain layers, none of which changes what another one reads"
-"""What to do where the layers that were found in one do something else."""
+"""The remedy if the traced layers compute something else than the module."""
 _RELU = (torch.relu, functional.relu, "relu")
 _TANH = (torch.tanh, functional.tanh, "tanh")
 _SUM = (operator.add, torch.add, "add")
@@ -31,7 +32,8 @@ _JOIN = (torch.cat, torch.concat)
 
 
 def encoded(layers: Layers, encoder: Any, seen: int) -> int:
-    """What an encoder makes of the state and what it sees."""
+    """Adds the layers of an encoder, which reads layer `seen` and images; returns the layer of its
+    features."""
     _require_no_hooks(encoder)
     if computes_as(encoder, StateEncoder):
         return layers.module(encoder.layers, seen)
@@ -47,7 +49,7 @@ def encoded(layers: Layers, encoder: Any, seen: int) -> int:
 
 
 def _traced(layers: Layers, encoder: Encoder, seen: int) -> int:
-    """What an encoder of the user's does, as torch.fx follows its forward()."""
+    """Adds the layers of a user-defined encoder, traced with torch.fx."""
     made = followed(layers, encoder, seen)
     features = beside_memory(made) if encoder.memory else made
     if not isinstance(features, int):
@@ -56,18 +58,18 @@ def _traced(layers: Layers, encoder: Encoder, seen: int) -> int:
 
 
 def beside_memory(made: Any) -> Any:
-    """What a forward() that has a memory returns beside it, of what followed() found. Raises ExportError for a memory
-    that is none of a GRU, which is what a pack has."""
+    """What a forward() with a memory returns besides that memory, given the result of followed().
+    Raises ExportError if the memory is not that of a GRU, the only kind that a pack has."""
     if not isinstance(made, tuple) or len(made) != 2 or made[1] is not AFTER:
         raise ExportError("forward() returns another memory than run_gru(): return that")
     return made[0]
 
 
 def followed(layers: Layers, module: nn.Module, seen: int, tried_with: Sequence[Any] = ()) -> Any:
-    """What forward() of a module of the user's returns, as torch.fx follows it: numbers of layers in the place of
-    what it makes of its inputs, tensors in the place of what is always the same, and AFTER in that of the memory
-    that run_gru() returns. `tried_with`: arguments of forward() by which sizes are found, which numbers that are
-    added to a value or multiply it need."""
+    """Traces forward() of a user-defined module with torch.fx. Returns what forward() returns, with
+    layer numbers in place of what depends on the inputs, tensors in place of constants, and AFTER
+    in place of the memory that run_gru() returns. `tried_with`: example arguments of forward(),
+    from which sizes are measured; arithmetic with single numbers needs them."""
     _require_no_hooks(module)
     tracer = _Tracer(module)
     fault = tracer.follow()
@@ -89,7 +91,7 @@ def followed(layers: Layers, module: nn.Module, seen: int, tried_with: Sequence[
 
 
 def _require_layer(module: nn.Module) -> None:
-    """Raises ExportError for a module that no layers express."""
+    """Raises ExportError for a module that cannot be expressed in layers."""
     Layers().module(module.layers if isinstance(module, Eyes) else module, 0)
 
 
@@ -97,7 +99,7 @@ AFTER = "the memory after the last step"
 
 
 class _Part(NamedTuple):
-    """Neighbors of the last dimension, which are no layer before they are read."""
+    """A range of the last dimension, which becomes a layer only when it is read."""
 
     x: int
     first: int
@@ -105,8 +107,8 @@ class _Part(NamedTuple):
 
 
 class _Followed:
-    """Layers of what the nodes of a graph make: `values` has the number of a layer for each, or a tensor where it
-    is always the same."""
+    """Converts the nodes of a graph to layers: `values` maps each node to the number of a layer, or
+    to a tensor if the node is constant."""
 
     def __init__(self, layers: Layers, tracer: _Tracer, seen: int, sizes: Mapping[fx.Node, int]):
         self.values: dict[fx.Node, Any] = {}
@@ -116,11 +118,11 @@ class _Followed:
         self._sizes = sizes
 
     def of(self, argument: Any) -> Any:
-        """An argument of a node, with the values of nodes in their places."""
+        """An argument of a node, with its nodes replaced by their values."""
         return fx.node.map_arg(argument, lambda node: self.values.get(node, node))
 
     def made_by(self, node: fx.Node) -> Any:
-        """What one operation of a forward() makes of the values before it."""
+        """The value of a node: one operation of a forward()."""
         if node.op == "call_module":
             return self._by_module(node)
         if node.op == "get_attr":
@@ -152,7 +154,7 @@ class _Followed:
         return self._layers.module(module, self.values[made])
 
     def _by_function(self, node: fx.Node) -> Any:
-        """None where no layer does it."""
+        """The value of a node that calls a function or method; None if no layer can express it."""
         layers = self._layers
         given: Any = node.args[0] if node.args else None
         x = self.of(given)
@@ -183,7 +185,7 @@ class _Followed:
         return None
 
     def _arithmetic(self, node: fx.Node, x: Any, other: Any) -> int | None:
-        """Of two values, or of one and a constant on either side."""
+        """Arithmetic on two values, or on a value and a constant in either order."""
         one, two = node.args
         if _is_layer(x, one) and _is_layer(other, two):
             return self._layers.add("sum", x, other) if node.target in _SUM else None
@@ -207,7 +209,7 @@ class _Followed:
         return self._layers.scaled(value, numbers, ones if is_first else -ones)
 
     def _spread(self, constant: float | Tensor, variable: Any) -> Tensor | None:
-        """A constant as a number for each of a value's; None where it is none."""
+        """A constant, expanded to the size of `variable`; None if it does not fit."""
         numbers = torch.as_tensor(constant, dtype=torch.float32).detach()
         size = self._sizes.get(variable, numbers.numel() if numbers.dim() else 0)
         if not size or numbers.numel() not in (1, size) or numbers.shape[:-1].numel() != 1:
@@ -215,7 +217,7 @@ class _Followed:
         return numbers.flatten().expand(size)
 
     def _slice(self, x: int, size: int | None, *index: Any) -> int | None:
-        """Some neighbors of the last dimension."""
+        """A range of the last dimension."""
         columns = index[-1]
         if index[:-1] != (...,) or not isinstance(columns, slice) or columns.step not in (None, 1):
             return None
@@ -234,7 +236,8 @@ class _Followed:
     def _chunks(
         self, x: int, size: int | None, chunks: Any, dim: Any = 0
     ) -> tuple[_Part, ...] | None:
-        """Parts of the last dimension, all but the last of one size; `dim` is torch's name."""
+        """Parts of the last dimension, of equal size except the last. The names of the parameters
+        are torch's."""
         if size is None or dim != -1 or not isinstance(chunks, int):
             return None
         width = -(-size // chunks)
@@ -242,14 +245,14 @@ class _Followed:
         return tuple(_Part(x, first, min(width, size - first)) for first in firsts)
 
     def _clamp(self, x: int, min: Any = None, max: Any = None) -> int | None:
-        """Under the names that torch gives the limits."""
+        """A clamp. The names of the limits are torch's."""
         lower, upper = -LARGEST if min is None else min, LARGEST if max is None else max
         if not isinstance(lower, (int, float)) or not isinstance(upper, (int, float)):
             return None
         return self._layers.add("clamp", x, lower=float(lower), upper=float(upper))
 
     def _constant(self, node: fx.Node) -> Any:
-        """What is always the same, as torch has it."""
+        """The value of a constant node, computed by torch."""
         arguments, keywords = self.of(node.args), self.of(node.kwargs)
         work: Callable[..., Any]
         if node.op == "call_method":
@@ -263,7 +266,7 @@ class _Followed:
         given = [*node.args, *node.kwargs.values()]
         names = dict(zip(("rnn", "inputs", "hidden", "starts"), node.args), **node.kwargs)
         nodes = self._tracer.graph.nodes
-        # What forward() is given behind the inputs.
+        # The arguments of forward() after the inputs.
         ahead = [one for one in nodes if not one.op.startswith(("call", "get", "output"))][1:]
         rnn, x = self.of(names["rnn"]), self.of(names["inputs"])
         if len(given) != 4 or [names["hidden"], names["starts"]] != ahead:
@@ -287,15 +290,15 @@ class _Followed:
 
 
 class _Proxy(fx.Proxy):
-    """Is unpacked as its tracer says. That of torch 1.13 looks at the byte code around it, which is another one since
-    Python 3.11."""
+    """A proxy that is unpacked by its tracer. Torch 1.13's own inspects the calling byte code,
+    which is different from Python 3.11 on."""
 
     def __iter__(self) -> Iterator[Any]:
         return self.tracer.iter(self)
 
 
 class _Tracer(fx.Tracer):
-    """Follows a forward() down to the layers that Layers.module() is asked for."""
+    """Traces a forward() down to the modules that Layers.module() converts."""
 
     def __init__(self, module: nn.Module) -> None:
         super().__init__(autowrap_functions=(run_gru,))
@@ -305,21 +308,21 @@ class _Tracer(fx.Tracer):
         self._constants: dict[str, Any] = {}
 
     def follow(self) -> Exception | None:
-        """Makes `graph`; what it was cut off by, where it was."""
+        """Traces into `graph`. Returns the exception that cut it off, or None."""
         before = {*vars(self._module)}
         try:
             self.trace(self._module)
-        except Exception as error:  # torch.fx raises whatever the code does with what it is given
+        except Exception as error:  # the traced code may raise anything when it gets proxies
             return error
         finally:
-            # torch.fx leaves them in the module, which is the user's.
+            # torch.fx leaves constants in the module, which is the user's; take them out again.
             members = vars(self._module)
             self._constants = {name: members.pop(name) for name in {*members} - before}
         return None
 
     def needed(self) -> set[fx.Node]:
-        """The nodes that what forward() returns is made of, and what may change that in place: not those of a critic
-        beside the actor."""
+        """The nodes that the result of forward() depends on, and those that may change it in place.
+        This excludes a critic beside the actor."""
         needed: set[fx.Node] = set()
         for node in reversed(self.graph.nodes):
             if node.op == "output" or node in needed or self._is_in_place(node):
@@ -334,7 +337,8 @@ class _Tracer(fx.Tracer):
         return is_named or bool(node.kwargs.get("inplace")) or node.target is operator.setitem
 
     def attribute(self, target: str) -> Any:
-        """What a node get_attr reads: a copy of a tensor, as it may be changed in place, or a module."""
+        """What a get_attr node reads: a module, or a copy of a tensor, since the graph may change
+        it in place."""
         found: Any = self._constants.get(target, self._module)
         if found is self._module:
             for name in target.split("."):
@@ -342,7 +346,7 @@ class _Tracer(fx.Tracer):
         return found.detach().clone() if isinstance(found, Tensor) else found
 
     def measured(self, arguments: Sequence[Any]) -> dict[fx.Node, int]:
-        """Of what each node makes of these arguments of forward(), the last dimension."""
+        """The last dimension of each node's value, measured with these arguments of forward()."""
         sizes: dict[str, int] = {}
 
         class Measuring(fx.Interpreter):
@@ -393,7 +397,7 @@ class _Tracer(fx.Tracer):
 
     @contextlib.contextmanager
     def telling_line(self, node: fx.Node) -> Iterator[None]:
-        """Around what may refuse a node: says where it is in the user's file."""
+        """A context for work on a node: adds its place in the user's file to an ExportError."""
         try:
             yield
         except ExportError as error:
@@ -402,11 +406,11 @@ class _Tracer(fx.Tracer):
             raise ExportError(f"{where}{error}") from error
 
     def told(self, fault: Exception) -> str:
-        """Why it could not go on."""
+        """The message for an exception that ended tracing."""
         frames = traceback.extract_tb(fault.__traceback__)
         own = [frame.lineno or 0 for frame in frames if frame.filename == self._file]
         where = f" in {self._place(own[-1])}" if own else ""
-        # What else torch.fx stumbles over in itself tells nobody anything.
+        # Exceptions from within torch.fx mean nothing to the user, except a TraceError.
         is_said = isinstance(fault, fx.proxy.TraceError) or frames[-1].filename == self._file
         why = f" ({type(fault).__name__}: {fault})" if is_said else ""
         return (
@@ -419,17 +423,20 @@ class _Tracer(fx.Tracer):
 
 
 def _is_layer(value: Any, of: Any = None) -> TypeGuard[int]:
-    """Whether a value is the number of a layer, and no number that forward() itself has in the place `of` it."""
+    """Whether a value is the number of a layer, and not a literal number in forward(): `of` is the
+    argument that it was read from."""
     return isinstance(value, int) and (of is None or isinstance(of, fx.Node))
 
 
 def _is_image(node: fx.Node) -> bool:
-    """Whether it reads a picture, which an export knows where Eyes do."""
+    """Whether a node reads a picture. Such nodes are skipped, as the layer of Eyes reads the
+    image."""
     return node.target is getattr and node.args[1] in ("rgb", "depth")
 
 
 def _require_no_hooks(encoder: nn.Module) -> None:
-    """Raises ExportError where something runs around a forward(), which no layer tells."""
+    """Raises ExportError if hooks run around a forward(), or if an instance has its own: layers
+    would not include them."""
     for name, module in encoder.named_modules():
         where = f"{name or 'the network'} ({type(module).__name__})"
         if module._forward_hooks or module._forward_pre_hooks:
@@ -442,7 +449,8 @@ def _require_no_hooks(encoder: nn.Module) -> None:
 
 
 def _require_unshared(node: fx.Node, given: fx.Node, in_place: Any) -> None:
-    """Raises ExportError where an operation may change in place what others read: layers never do."""
+    """Raises ExportError if an operation may change in place what other nodes read: layers never
+    change their inputs."""
     if in_place and (len(given.users) > 1 or given.target in (getattr, operator.getitem)):
         raise ExportError(
             f"{node.target} in forward() works in place on what is read elsewhere ({node.format_node()}): leave "

@@ -1,4 +1,4 @@
-"""The layers of a policy pack, made of modules of torch."""
+"""Converts torch modules to layers of a policy pack."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ from galactic.learning.refusals import CheckpointError
 
 
 LARGEST = float(np.finfo(np.float32).max)
-"""Limits nothing."""
+"""A limit that clamps nothing."""
 
 
 class ExportError(CheckpointError):
-    """A module that no layer of a policy pack can express: names it and says what was expected."""
+    """A module that cannot be expressed in layers of a policy pack. The message names it and says
+    what was expected."""
 
 
 class Layers:
@@ -30,12 +31,12 @@ class Layers:
         self.list: list[dict[str, Any]] = []
 
     def add(self, kind: str, *inputs: int, **fields: Any) -> int:
-        """A layer of the kinds of schema/policy.fbs, in snake_case without "Layer"."""
+        """Adds a layer. `kind` is one of schema/policy.fbs, in snake_case without "Layer"."""
         self.list.append({"kind": kind, "inputs": list(inputs), **fields})
         return len(self.list) - 1
 
     def module(self, module: Any, x: int) -> int:
-        """What a module of torch makes of value `x`."""
+        """Adds the layers of a torch module that reads layer `x`."""
         if computes_as(module, nn.Sequential):
             for part in module:
                 x = self.module(part, x)
@@ -59,9 +60,9 @@ class Layers:
             both = self.add("sum", self.module(module.layers, x), self.module(module.around, x))
             return self.add("relu", both)
         if computes_as(module, nn.Flatten):
-            return x  # linear layers read images as vectors, in the same order
+            return x  # linear layers read images as vectors in the same order
         described = str(module)
-        if "\n" in described:  # it lists what it is made of
+        if "\n" in described:  # str() lists its parts
             described = type(module).__name__
         raise ExportError(f"a policy pack has no layer for {described}")
 
@@ -80,8 +81,8 @@ class Layers:
         )
 
     def seen(self, policy: Policy, state: int, columns: Sequence[int]) -> int:
-        """The state and what the eyes see, as the actor reads them. `state` has these columns of a row of
-        observations."""
+        """Adds the layers in front of the encoder: the state and the output of the eyes, as the
+        actor reads them. The layer `state` has these columns of an observed row."""
         normal, size, chosen = state, len(columns), list(columns)
         if policy.normalize is not None:
             mean = numbers_of(policy.normalize.mean[chosen])
@@ -98,11 +99,11 @@ class Layers:
         return self.add("tanh", self.times(1.0 / scale, state, size))
 
     def times(self, factor: float, x: int, size: int) -> int:
-        """Value `x`, of `size` numbers, times a factor."""
+        """Layer `x`, of `size` numbers, times a factor."""
         return self.scaled(x, torch.zeros(size), torch.full((size,), factor))
 
     def scaled(self, x: int, mean: torch.Tensor, factors: torch.Tensor) -> int:
-        """(x - mean) * factors, of as many numbers each."""
+        """(x - mean) * factors, all of the same size."""
         fields = {"mean": numbers_of(mean), "inverse_deviation": numbers_of(factors)}
         return self.add("normalize", x, **fields, limit=LARGEST)
 
@@ -143,12 +144,12 @@ class Layers:
 
 
 _WORK = ("forward", "_conv_forward", "__call__", "__iter__")
-"""What of a module of torch or of ours computes."""
+"""The methods that define what a module computes."""
 
 
 def computes_as(module: nn.Module, *kinds: type[nn.Module]) -> bool:
-    """Whether it computes what one of these does: a class that inherits from it may be made in another way, and do
-    nothing else."""
+    """Whether a module computes the same as one of these classes. A derived class qualifies if it
+    overrides none of the methods that compute."""
     made = type(module)
     return any(
         isinstance(module, kind)
@@ -158,12 +159,12 @@ def computes_as(module: nn.Module, *kinds: type[nn.Module]) -> bool:
 
 
 def numbers_of(tensor: torch.Tensor | None) -> np.ndarray | None:
-    """As a layer has it."""
+    """A tensor as the array that a layer takes."""
     return None if tensor is None else tensor.detach().float().cpu().numpy()
 
 
 def _edge(size: Any) -> int:
-    """The edge of a square."""
+    """The edge of a square size."""
     if isinstance(size, tuple):
         if len(set(size)) != 1:
             raise ExportError(f"{size} is not a perfect square")

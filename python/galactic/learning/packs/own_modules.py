@@ -1,4 +1,4 @@
-"""Policy packs of modules of torch that were trained in a loop of the user's: docs/policies.md."""
+"""Policy packs from torch modules that were trained in the user's own loop: docs/policies.md."""
 
 from __future__ import annotations
 
@@ -34,52 +34,57 @@ from galactic.learning.simulation_words import CHOSEN_BY_TRAINER
 from galactic.vector_env import VectorEnv
 
 NO_NOISE = -20.0
-"""The logarithm of a standard deviation that changes no action."""
+"""The logarithm of a standard deviation that is too small to change an action."""
 
 
 class ActionParameters(NamedTuple):
-    """What the forward() of a module returns that export_module() makes a policy pack of: from what the actions of
-    T steps of n envs are drawn."""
+    """What forward() of a module must return for export_module(): the parameters of the
+    distributions from which the actions of T steps of n envs are drawn."""
 
     mean: Tensor | None = None
-    """[T, n, C] float32: of the first C actions, which are normally distributed; None: there are none."""
+    """[T, n, C] float32: the means of the first C actions, which are normally distributed; None:
+    there are no such actions."""
     log_deviation: Tensor | None = None
-    """[T, n, C], or [C] where it is always the same: natural logarithms of their standard deviations; None: the
+    """[T, n, C], or [C] if constant: natural logarithms of their standard deviations; None: the
     means are the actions."""
     logits: Sequence[Tensor] = ()
-    """Of each action behind them that has several values, [T, n, V] for its V values; or, for one of two values,
-    [T, n, 1]: the log-odds of the second one."""
+    """For each following action that has several values: [T, n, V] for its V values, or, for an
+    action of two values, also [T, n, 1], the log-odds of the second."""
 
 
 def export_module(path: str | pathlib.Path, module: nn.Module, envs: VectorEnv, *,
                   discrete: Sequence[Sequence[float]] = ((0.0, 1.0), (0.0, 1.0)),
                   critic_only: Sequence[str] = (), name: str = "", robot: str = "",
                   trained_with: Mapping[str, Any] | None = None) -> None:  # fmt: skip
-    """Makes a policy pack of a module of torch, for galactic-run, galactic-dynamics and galactic.LearnedPolicy.
+    """Makes a policy pack from a torch module, for galactic-run, galactic-dynamics and
+    galactic.LearnedPolicy.
 
-    The pack is played on made-up inputs before it is written, and compared with the module; the file appears whole
-    or not at all. The module stays as it is, on its device.
+    Before the pack is written, it is played on made-up inputs and compared with the module. The
+    file is written atomically. The module is not changed, and stays on its device.
 
     Args:
         path: the pack to write.
         module: has forward(inputs) -> ActionParameters. `inputs` are galactic.learning.encoders.Inputs, of T steps of
             n envs: `state` float32 [T, n, S], the flat observation; `rgb` uint8 [T, n, H, W, 3] and `depth` float32
-            [T, n, H, W], as far as `envs` draw them, which only encoders.Eyes may look at; and `previous` float32
-            [T, n, A], the actions before, limited to [-1, 1] and zero where an episode begins. forward() is followed
+            [T, n, H, W], if `envs` draw them, which only encoders.Eyes may read; and `previous` float32
+            [T, n, A], the previous actions, clamped to [-1, 1] and zero where an episode begins. forward() is traced
             down to layers that a pack has (docs/policies.md). With a memory of M numbers for each env, the module
             has an attribute `memory`, M, and forward(inputs, memory, starts) -> (ActionParameters, memory), `memory`
-            float32 [n, M] and `starts` bool [T, n], which it passes on to galactic.learning.sequences.run_gru().
-        envs: those that it was trained in, or of the same options: they tell what is observed, what is drawn and
-            which options of the simulation belong to it. Noise of robots and cameras is left out.
-        discrete: the values of each of the last actions, which have one of a few. One value alone: the action is
-            always that, and has no logits. The actions before them are continuous.
-        critic_only: parts of the observation that `inputs.state` is without, as a critic alone saw them.
-        name: of the policy; else the file's.
-        robot: name of the only robot that it may move, such as envs.world.robot; else any with as many actions.
-        trained_with: what the pack is to tell of the training, such as {"steps": 6_000_000}.
+            float32 [n, M] and `starts` bool [T, n], which it must pass on to galactic.learning.sequences.run_gru().
+        envs: the envs in which the module was trained, or others with the same options. They define what is
+            observed, what is drawn and which options of the simulation go into the pack. Noise of robots and cameras
+            is left out.
+        discrete: for each of the last actions, the values that it can have. An action with a single value always
+            has that value, and no logits. The actions before these are continuous.
+        critic_only: parts of the observation that only the critic saw, and that `inputs.state` lacks.
+        name: the name of the policy; by default, that of the file.
+        robot: the name of the only robot that the policy may move, such as envs.world.robot; by default, any robot
+            with as many actions.
+        trained_with: what the pack records about the training, such as {"steps": 6_000_000}.
 
-    Raises ExportError where the module cannot become a pack, and says in which line; TypeError, ValueError and
-    SettingsError for what else cannot be; galactic.Error where the file cannot be written, or a weight is no number.
+    Raises ExportError, which names the line, if the module cannot become a pack; TypeError, ValueError and
+    SettingsError for other invalid arguments; galactic.Error if the file cannot be written, or a weight is not
+    finite.
     """
     if not isinstance(envs, VectorEnv):
         raise TypeError(
@@ -93,7 +98,7 @@ def export_module(path: str | pathlib.Path, module: nn.Module, envs: VectorEnv, 
 
 
 class _Exported:
-    """A module, and what it is tried with."""
+    """A module, and the inputs with which it is tried."""
 
     def __init__(
         self, module: nn.Module, envs: VectorEnv, values: list[list[float]], critic_only: str
@@ -116,10 +121,10 @@ class _Exported:
         self._image = _image_of(envs)
         state = sum(size for _, size in self._observation)
         self.inputs = made_up(state, self._image, self._actions)
-        """What it is tried with."""
+        """The inputs with which the module is tried."""
 
     def content(self, name: str, robot: str) -> dict[str, Any]:
-        """As _core.write_policy_pack() wants it."""
+        """The pack in the form that _core.write_policy_pack() takes."""
         arguments = (
             step_of(self.inputs, 0),
             self._no_memory(),
@@ -141,7 +146,7 @@ class _Exported:
         logits, discrete = iter(zip(made.logits, tried.logits)), []
         for values in self._values:
             if len(values) == 1:
-                # A pack has no fewer values than two.
+                # In a pack, an action has at least two values.
                 always = _number(layers, "logits", torch.zeros(2))
                 discrete.append({"logits": always, "values": 2 * values})
                 continue
@@ -164,7 +169,7 @@ class _Exported:
         }
 
     def network(self) -> Network:
-        """What a pack of it is compared with."""
+        """The network with which a pack of the module is compared."""
 
         def heads(inputs: Inputs, memory: Tensor, starts: Tensor) -> tuple[list[Tensor], Tensor]:
             made, memory = self._called(inputs, memory, starts)
@@ -175,7 +180,7 @@ class _Exported:
     def _called(
         self, inputs: Inputs, memory: Tensor, starts: Tensor
     ) -> tuple[ActionParameters, Tensor]:
-        """What the module makes of one step, checked, and the memory after it."""
+        """The checked result of the module for one step, and the memory after it."""
         arguments = (memory.clone(), starts.clone()) if self._memory else ()
         try:
             with torch.no_grad():
@@ -201,7 +206,7 @@ class _Exported:
         return made, memory
 
     def _require_parameters(self, made: ActionParameters) -> None:
-        """Raises ExportError where they are of other actions than those of the envs."""
+        """Raises ExportError if the parameters do not fit the actions of the envs."""
         several = [len(values) for values in self._values if len(values) > 1]
         counts = f"the envs have {self._actions} actions, and `discrete` has the values of the last {len(self._values)}"
         if self._motions:
@@ -227,7 +232,7 @@ class _Exported:
             _require_shape("logits", logits, [1, ENVS, width], f"their action has {values} values")
 
     def _heads(self, made: ActionParameters) -> list[Tensor]:
-        """Those of one step, as a Network has them."""
+        """The heads of one step, as in Network."""
         heads = []
         if made.mean is not None:
             deviation = _constant_deviations(self._motions, made.log_deviation)
@@ -243,19 +248,19 @@ class _Exported:
 
 
 def _copied(module: nn.Module) -> nn.Module:
-    """As it acts, on the processor; torch.fx changes what it follows."""
+    """A copy of the module on the processor, in eval mode; torch.fx changes what it traces."""
     if not isinstance(module, nn.Module):
         raise TypeError(f"module is a {type(module).__name__}, expected a torch.nn.Module")
     try:
         return copy.deepcopy(module).cpu().eval()
-    except Exception as error:  # of what modules hold
+    except Exception as error:  # modules may hold anything
         raise ExportError(
             f"{type(module).__name__} cannot be copied ({type(error).__name__}: {error}): keep in it what it acts with"
         ) from error
 
 
 def _options_of(envs: VectorEnv) -> dict[str, Any]:
-    """Of the simulation, those that the envs were made with, beside the world's, but for noise."""
+    """The options of the simulation that the envs set in addition to the world's, without noise."""
     left_out = CHOSEN_BY_TRAINER.union(_core.Simulator.NOISE_OPTIONS)
     of_world = envs.world.options
     return {
@@ -266,7 +271,7 @@ def _options_of(envs: VectorEnv) -> dict[str, Any]:
 
 
 def _image_of(envs: VectorEnv) -> dict[str, Any] | None:
-    """What the envs draw."""
+    """The image that the envs draw; None if they draw none."""
     cameras = options_of_cameras("images", envs.images)
     if len(cameras) > 1:
         raise ExportError(
@@ -283,14 +288,15 @@ def _image_of(envs: VectorEnv) -> dict[str, Any] | None:
 
 
 def _constant_deviations(motions: int, given: Any) -> Any:
-    """The logarithms of deviations where they are always the same, and else what is given."""
+    """The logarithms of deviations in a common form: constants are flattened, and None becomes
+    NO_NOISE."""
     if given is None:
         return torch.full((motions,), NO_NOISE)
     return given.flatten() if isinstance(given, Tensor) and given.dim() == 1 else given
 
 
 def _number(layers: Layers, what: str, made: Any) -> int:
-    """The layer of what a forward() returns."""
+    """The layer that computes what a forward() returns."""
     if isinstance(made, Tensor):
         return layers.add("constant", values=numbers_of(made.flatten()))
     if not isinstance(made, int):

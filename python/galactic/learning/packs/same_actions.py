@@ -1,4 +1,5 @@
-"""Whether a policy pack acts as the network that it is made of: it is played before it is kept."""
+"""Checks that a policy pack acts like the network from which it was made, by playing it before it
+is kept."""
 
 from __future__ import annotations
 
@@ -19,30 +20,31 @@ from galactic.learning.packs.layers import ExportError
 from galactic.learning.user_code.own_networks import Seen, some_inputs
 
 STEPS, ENVS = 4, 8
-"""Of the inputs that a pack is tried with."""
+"""The size of the inputs with which a pack is tried."""
 SAME = 1e-3
-"""Between heads of a network and of its pack, as a share of the largest number of a head: sums in another order
-differ by less, another network by more."""
+"""The tolerance between a head of a network and of its pack, relative to the head's largest number:
+sums in a different order differ by less, a different network by more."""
 _ROUNDING = 1e-5
-"""What sums in another order differ by where a head's numbers are as good as zero."""
+"""The absolute tolerance, for sums in a different order in a head whose numbers are almost zero."""
 
 
 class Network(NamedTuple):
-    """What a pack is compared with. Its heads are the means of the continuous actions, the logarithms of their
-    standard deviations, and of each discrete action the log-odds of its other values against the first.
-    """
+    """A network with which a pack is compared. Its heads are the means of the continuous actions,
+    the logarithms of their standard deviations, and, for each discrete action, the log-odds of its
+    other values against the first."""
 
     heads: Callable[[Inputs, Tensor, Tensor], tuple[Sequence[Tensor], Tensor]]
-    """Of one step of n envs, inputs [1, n, ...], memory [n, M] and starts bool [1, n]: the heads, [n, F] each, and
-    the memory after it."""
+    """Called with inputs [1, n, ...], memory [n, M] and starts bool [1, n] for one step of n envs.
+    Returns the heads, [n, F] each, and the memory after the step."""
     memory: int
-    """M, 0 without."""
+    """M; 0: no memory."""
     columns: Sequence[int] | None = None
-    """Which of a row of its state the pack observes; None: all."""
+    """Which columns of the network's state the pack observes; None: all."""
 
 
 def made_up(state: int, image: Mapping[str, Any] | None, actions: int) -> Inputs:
-    """STEPS of ENVS, of rows of `state` numbers, of what `image` of a pack draws and of so many actions."""
+    """Made-up inputs for STEPS steps of ENVS envs: rows of `state` numbers, pictures as in the
+    pack's `image`, and `actions` previous actions."""
     images: dict[str, tuple[int, ...]] = {}
     if image is not None:
         edges = (image["height"], image["width"])
@@ -50,25 +52,25 @@ def made_up(state: int, image: Mapping[str, Any] | None, actions: int) -> Inputs
         images |= {"depth": edges} if image["depth"] else {}
     inputs = some_inputs(Encoder(), Seen(state, {}, images, actions), STEPS, ENVS)
     previous = torch.zeros(STEPS, ENVS, actions)
-    # Rows of a state have both signs.
+    # The numbers of a state have both signs.
     return inputs._replace(state=4.0 * inputs.state - 2.0, previous=previous)
 
 
 def step_of(inputs: Inputs, step: int) -> Inputs:
-    """One of their steps."""
+    """One step of the inputs."""
     state, *others = inputs
     at = slice(step, step + 1)
     return Inputs(state[at], *(None if part is None else part[at] for part in others))
 
 
 def require_same_actions(content: dict[str, Any], network: Network, inputs: Inputs, remedy: str) -> None:  # fmt: skip
-    """Raises ExportError where a pack of this content (_core.write_policy_pack()) does not what the network does with
-    inputs of made_up(): over episodes that end and begin, all numbers of all heads. `remedy`: what to do then.
-    """
+    """Raises ExportError if a pack of this content (_core.write_policy_pack()) computes something
+    else than the network from inputs of made_up(). Compares all numbers of all heads, over episodes
+    that end and begin. `remedy`: what to do in that case."""
     layers, sizes = _with_heads(content)
     actions, total = _actions_of(content), sum(sizes)
     found, wanted = [], []
-    # Packs whose actions are what the network says, as many numbers at a time as there are actions.
+    # Play packs whose actions are the numbers of the heads, as many at a time as there are actions.
     for first in range(0, total, actions):
         said = {"kind": "slice", "inputs": [len(layers) - 1], "first": first, "size": actions}
         everything = {"count": actions, "mean": len(layers), "log_deviation": len(layers)}
@@ -89,8 +91,8 @@ def require_same_actions(content: dict[str, Any], network: Network, inputs: Inpu
 
 
 def _with_heads(content: dict[str, Any]) -> tuple[list[dict[str, Any]], list[int]]:
-    """The layers, and behind them one with the numbers of all heads, filled up with zeros to a multiple of the
-    actions; the sizes of the heads."""
+    """The layers, with an additional last one that holds the numbers of all heads, padded with
+    zeros to a multiple of the actions; and the sizes of the heads."""
     layers, heads, sizes = [*content["layers"]], [], []
     continuous = content["continuous"]
     if continuous is not None:
@@ -121,8 +123,8 @@ def _actions_of(content: dict[str, Any]) -> int:
 def _played(
     content: dict[str, Any], network: Network, inputs: Inputs
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The likeliest actions of a pack, [STEPS, ENVS, A], and the heads of the network in the same episodes, filled up
-    with zeros as _with_heads() has it."""
+    """The likeliest actions of a pack, [STEPS, ENVS, A], and the heads of the network in the same
+    episodes, padded with zeros at the end."""
     player = _player_of(content)
     image = content["image"] or {"color": False, "depth": False}
     columns = slice(None) if network.columns is None else list(network.columns)
@@ -130,7 +132,7 @@ def _played(
     previous = torch.zeros(ENVS, player.action_count)
     found, wanted = [], []
     for step in range(STEPS):
-        # Envs begin in turn, and all of them in the first step.
+        # All envs begin an episode in the first step, later ones in turn.
         starts = (torch.arange(ENVS) + step) % STEPS == 0 if step else torch.ones(ENVS) > 0
         seen = step_of(inputs, step)._replace(previous=(previous * ~starts[:, None])[None])
         heads, memory = network.heads(seen, memory, starts[None].clone())
@@ -148,7 +150,7 @@ def _played(
 
 
 def _player_of(content: dict[str, Any]) -> _core.LearnedPolicy:
-    """Plays the likeliest actions of a pack."""
+    """A player of the likeliest actions of a pack."""
     with tempfile.TemporaryDirectory() as folder:
         pack = pathlib.Path(folder) / "tried.pack"
         try:
@@ -156,14 +158,14 @@ def _player_of(content: dict[str, Any]) -> _core.LearnedPolicy:
         except Error as error:
             if error.code == ErrorCode.IO:
                 raise
-            # Nobody has heard of this file.
+            # The user does not know this temporary file, so name the policy.
             where = error.where.replace(str(pack), content["name"])
             raise Error(error.code, where, error.message) from None
         return _core.LearnedPolicy(pack, ENVS, deterministic=True, threads=1)
 
 
 def _require_near(found: list[np.ndarray], wanted: list[np.ndarray], remedy: str) -> None:
-    """Raises ExportError where one of the heads is another one than is wanted."""
+    """Raises ExportError if a head differs from the wanted one by more than the tolerance."""
     for one, other in zip(found, wanted):
         apart = np.abs(one - other).max(initial=0.0)
         # A comparison with NaN is false.
