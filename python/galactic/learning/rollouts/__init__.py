@@ -1,1 +1,1 @@
-"""Policies act, environments step, a rollout fills. Start reading at `collector.py`."""
+"""Collects rollouts: policies act, and environments step. Start reading at `collector.py`."""

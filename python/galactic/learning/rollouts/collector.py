@@ -1,4 +1,5 @@
-"""Fills rollouts: the policy acts, the environments step, half a batch each in turn."""
+"""Fills rollouts: the policy acts and the environments step, one half of the batch after the
+other."""
 
 from __future__ import annotations
 
@@ -24,10 +25,10 @@ from galactic.learning.updates.precision import Precision
 
 @dataclass(frozen=True)
 class CollectorOptions:
-    """`first_env`: number over all ranks of this rank's first env. `cuda_graphs`: whether a GPU replays the
-    policy's launches. `bootstraps`: whether an episode that time cut off is worth something from there on.
-    `time_columns`: those of the row that this is asked for which are to say that there is no limit of time.
-    """
+    """`first_env`: the number of this rank's first env among those of all ranks. `cuda_graphs`:
+    whether a GPU replays the policy's launches as a graph. `bootstraps`: whether an episode cut off
+    by the time limit gets the value of its last observation. `time_columns`: the columns of that
+    observation to be set as if there were no time limit."""
 
     horizon: int
     seed: int
@@ -39,11 +40,12 @@ class CollectorOptions:
 
 
 class Collector:
-    """Steps `envs` with `policy`. Keeps one rollout, which every collect() fills anew, and what has to
-    outlive it: memories, actions before, and the sums of the episodes under way."""
+    """Steps `envs` with `policy`. Keeps one rollout, which every collect() fills anew, and what has
+    to outlive it: memories, previous actions, and the sums of the current episodes."""
 
     PHASES = ("inference", "sending", "simulation", "post-processing")
-    """What the stopwatch measures of a rollout; "simulation" is what is waited for it."""
+    """What the stopwatch measures of a rollout; "simulation" is the time spent waiting for the
+    simulation."""
     plays_episodes = True
 
     def __init__(self, envs: Environments, policy: Policy, options: CollectorOptions,
@@ -54,7 +56,7 @@ class Collector:
         self.precision = precision
         self.device = device
         self.episodes = EpisodeSums()
-        """Of those that ended in the latest rollout."""
+        """The sums of the episodes that ended in the latest rollout."""
         self.stopwatch = Stopwatch()
         self.rollout = Rollout.empty(
             options.horizon,
@@ -89,10 +91,10 @@ class Collector:
     def collect(
         self, update: int, should_stop: Callable[[int], bool] = lambda step: False
     ) -> Rollout:
-        """Goes on from where the last rollout ended, for `horizon` steps or until should_stop(step),
-        but for one at least: nothing can be learned from none. `update` counts from 0 and chooses
-        the random numbers. The rollout is ready for the learner, and overwritten by the next call.
-        """
+        """Continues from the end of the last rollout, for `horizon` steps or until
+        should_stop(step), but for at least one step, as an empty rollout teaches nothing. `update`
+        counts from 0 and selects the random numbers. The rollout is ready for the learner; the next
+        call overwrites it."""
         options, rollout = self.options, self.rollout
         if rollout.steps:
             self._begin_again()
@@ -119,12 +121,12 @@ class Collector:
         return rollout
 
     def state_dict(self) -> dict[str, Tensor]:
-        """All that the next collect() depends on, but for the policy."""
+        """Everything that the next collect() depends on, except the policy."""
         envs = torch.from_numpy(np.frombuffer(self.envs.save(), np.uint8).copy())
         return {"envs": envs, **self._beside_envs()}
 
     def _beside_envs(self) -> dict[str, Tensor]:
-        """The part of the state whose size is known without the envs."""
+        """The part of the state whose size does not depend on the saved envs."""
         last = self.rollout.steps
         hidden = {} if self._hidden is None else {"hidden": self._hidden.cpu()}
         return {
@@ -137,8 +139,8 @@ class Collector:
         }
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
-        """Raises ValueError where it is not the state of as many envs with this policy, and what the
-        envs raise."""
+        """Raises ValueError unless `state` fits the number of envs and this policy, and whatever
+        the envs raise."""
         require_types(state, {"envs": Tensor})
         require_tensors(state, self._beside_envs())
         self.envs.restore(state["envs"].numpy().tobytes())
@@ -155,7 +157,7 @@ class Collector:
         self._waits[:] = state["waits"].numpy()
 
     def _begin_again(self) -> None:
-        """Makes the state after the last step row 0."""
+        """Moves the state after the last step to row 0."""
         rollout, last = self.rollout, self.rollout.steps
         rollout.first_previous.copy_(self._previous_after(last))
         for rows in (rollout.state, rollout.rgb, rollout.depth, rollout.starts):
@@ -167,7 +169,7 @@ class Collector:
         rollout.steps = 0
 
     def _previous_after(self, steps: int) -> Tensor:
-        """[N, A]: the action before the step that comes, zero where an episode starts."""
+        """[N, A]: the action before the next step, zero where an episode starts."""
         if steps == 0:
             return self.rollout.first_previous
         before = self.rollout.actions[steps - 1].clamp(-1.0, 1.0)
@@ -181,14 +183,14 @@ class Collector:
         return torch.from_numpy(noise).to(self.device)
 
     def _prepare(self, noise: Tensor) -> None:
-        """Records graphs while no half is under way: its threads use the device, too."""
+        """Records graphs before a half is sent, since the envs' threads use the device, too."""
         with self.stopwatch.time("inference"):
             for envs, decide in zip(self.envs.halves, self._decisions):
                 if isinstance(decide, Replayed):
                     decide.prepare(*self._asked(envs, 0, noise[0, envs]))
 
     def _asked(self, envs: slice, step: int, noise: Tensor) -> Tensors:
-        """What the policy decides by: arguments of _decide()."""
+        """The inputs of the policy: arguments of _decide()."""
         inputs = self.rollout.inputs(step, step + 1, envs, self.policy.needs_previous)
         memory = None if self._hidden is None else self._hidden[envs]
         starts = self.rollout.starts[step : step + 1, envs]
@@ -212,7 +214,7 @@ class Collector:
     def _decide(self, state: Tensor, rgb: Tensor | None, depth: Tensor | None,
                 previous: Tensor | None, hidden: Tensor | None, starts: Tensor,
                 noise: Tensor) -> Tensors:  # fmt: skip
-        """Actions, their log-probabilities, values, and the memory behind them."""
+        """Actions, their log-probabilities, values, and the memory after the step."""
         with self.precision.autocast():
             outputs = self.policy.act(Inputs(state, rgb, depth, previous), hidden, starts)
             actions = outputs.actions.sample(noise)
@@ -257,8 +259,8 @@ class Collector:
             self.episodes.logs[name] = self.episodes.logs.get(name, 0.0) + logged
 
     def _timeout(self, envs: slice, step: int, timeouts: Timeouts) -> _Timeout:
-        """Keeps what the values of cut-off episodes are computed from; that waits for the rollout's
-        end, so that one pass does all of them. The memory is the one after the last action."""
+        """Keeps the inputs for the values of cut-off episodes. They are all computed in one pass at
+        the end of the rollout. The memory is the one after the last action."""
         index = torch.from_numpy(timeouts.envs).to(self.device) + (envs.start or 0)
 
         def part(rows: np.ndarray | None) -> Tensor | None:
@@ -266,7 +268,7 @@ class Collector:
 
         state = part(timeouts.state)
         assert state is not None
-        # As a simulation without a limit says it.
+        # As in the observations of a simulation without a time limit.
         state[:, list(self.options.time_columns)] = 1.0
         return _Timeout(
             step,
@@ -281,7 +283,8 @@ class Collector:
         )
 
     def _fill_values(self) -> None:
-        """The value after the last step, or all of them where that is cheaper."""
+        """Fills in the value after the last step, or all values if the policy computes them
+        separately."""
         rollout, last = self.rollout, self.rollout.steps
         first = 0 if self.policy.values_apart else last
         inputs = rollout.inputs(first, last + 1, slice(None), self.policy.needs_previous)
@@ -290,15 +293,16 @@ class Collector:
         rollout.values[first : last + 1] = values
 
     def _bootstrap_timeouts(self) -> None:
-        """Adds gamma times the value of the last observation to the reward of episodes that only time
-        cut off (partial-episode bootstrapping: Pardo et al. 2018). It is what they would have earned if they
-        had gone on where the row says that there is no limit. As it was observed, it says that no time is
-        left, as no other row of a rollout does (docs/learning.md)."""
+        """Adds gamma times the value of the last observation to the reward of episodes that only
+        time cut off (partial-episode bootstrapping: Pardo et al. 2018). With `time_columns`, that
+        is what they would have earned if they had continued. Without, the observation says that no
+        time is left, as no other row of a rollout does (docs/learning.md)."""
         if not self._timeouts:
             return
         kept = self._timeouts
         count = sum(len(timeout.envs) for timeout in kept)
-        # It is another one in each rollout: a few sizes are enough.
+        # The count differs from rollout to rollout; rounding it up keeps the number of sizes to
+        # tune small.
         size = 1 << (count - 1).bit_length() if self.precision.tunes else count
         seen = [timeout.inputs for timeout in kept]
         state = _joined([one.state for one in seen], size)
@@ -330,7 +334,8 @@ class _Timeout:
 
 
 def _joined(parts: list[Tensor | None], size: int) -> Tensor | None:
-    """[1, size, ...] from parts of [k_i, ...], all of them there or none: zeros behind them."""
+    """Joins parts of [k_i, ...], none or all of which are None, to [1, size, ...], padded with
+    zeros."""
     there = [part for part in parts if part is not None]
     if not there:
         return None

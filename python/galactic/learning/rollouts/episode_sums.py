@@ -1,4 +1,4 @@
-"""What episodes came to, added up: over envs, ranks and the window of the curves."""
+"""Sums of episode results: over envs, ranks and the window of the curves."""
 
 from __future__ import annotations
 
@@ -9,29 +9,30 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 MEASURE = "measure_"
-"""What the names of means begin with that are of a task's own measures: no other one does."""
+"""The prefix of the names of means of a task's own measures; no other mean has it."""
 LOG = "log_"
-"""The same of what it says of each step, beside the policy's log_std."""
+"""The prefix for what a task logs in each step; of the other means, only the policy's log_std has
+it."""
 
 
 class OwnNames(NamedTuple):
-    """What a task of one's own says of each episode, and of each step, by name."""
+    """The names of what a user-defined task measures of each episode, and logs in each step."""
 
     measures: tuple[str, ...] = ()
     logs: tuple[str, ...] = ()
 
     @property
     def of_means(self) -> list[str]:
-        """What their means are called."""
+        """The names of their means."""
         return [MEASURE + name for name in self.measures] + [LOG + name for name in self.logs]
 
 
 @dataclass
 class EpisodeSums:
-    """Sums over some episodes. `picks`: in how many of them the target had been in the hand.
-    `measures`: of what a task of one's own says of them, by name; those that
-    are not there are 0, and NaN is not known. `logs`: the same of what it says of each of `steps`, of these
-    episodes or of others that are under way."""
+    """Sums over some episodes. `picks`: in how many of them the target was in the hand. `measures`:
+    sums of what a user-defined task measures, by name; missing names count as 0, and NaN means
+    unknown. `logs`: sums of what it logs, over `steps` steps of these and of unfinished
+    episodes."""
 
     episodes: float = 0.0
     successes: float = 0.0
@@ -43,7 +44,7 @@ class EpisodeSums:
     logs: dict[str, float] = field(default_factory=dict)
 
     def by_name(self, names: OwnNames) -> dict[str, float]:
-        """All of them, and of the task's own what is named; of() makes the same of it."""
+        """All sums by name, with those of the task that are in `names`. The inverse of of()."""
         return {
             "episodes": self.episodes,
             "successes": self.successes,
@@ -57,7 +58,8 @@ class EpisodeSums:
 
     @classmethod
     def of(cls, numbers: Mapping[str, float], names: OwnNames) -> EpisodeSums:
-        """Of the task's own what is named, and not known where it is not among `numbers`."""
+        """The inverse of by_name(). Sums of the task that are missing in `numbers` are unknown
+        (NaN)."""
         return cls(
             numbers["episodes"],
             numbers["successes"],
@@ -71,12 +73,13 @@ class EpisodeSums:
 
     @classmethod
     def total(cls, parts: Iterable[EpisodeSums], names: OwnNames) -> EpisodeSums:
-        """Of all parts together."""
+        """The sum of all parts."""
         rows = [one.by_name(names) for one in (cls(), *parts)]
         return cls.of({name: sum(row[name] for row in rows) for name in rows[0]}, names)
 
     def means(self) -> dict[str, float]:
-        """Of an episode or a step, by the names that columns of the curves have; nothing where no episode was."""
+        """Means per episode, or per step for logs, by the names of the columns of the curves; empty
+        if there was no episode."""
         if not self.episodes:
             return {}
         sums = {
@@ -92,8 +95,8 @@ class EpisodeSums:
 
 
 class RecentEpisodes:
-    """The latest episodes of training, `window` or a few more: those of as few rollouts as cover it. `waiting`: envs
-    of all ranks that have not finished an episode yet."""
+    """The latest episodes of training: those of the fewest rollouts that have at least `window`
+    episodes. `waiting`: how many envs of all ranks have not finished an episode yet."""
 
     def __init__(self, names: OwnNames, window: int, waiting: int):
         self.waiting = waiting
@@ -102,7 +105,7 @@ class RecentEpisodes:
         self._rollouts: collections.deque[EpisodeSums] = collections.deque()
 
     def add(self, sums: EpisodeSums, waiting: int) -> None:
-        """Takes in what a rollout came to."""
+        """Adds the episodes of a rollout."""
         self.waiting = waiting
         self._rollouts.append(sums)
         kept = sum(one.episodes for one in self._rollouts)
@@ -113,17 +116,18 @@ class RecentEpisodes:
         return EpisodeSums.total(self._rollouts, self._names)
 
     def figures(self) -> dict[str, float]:
-        """Success, picked, return, length and what the task measures, means over total(); none before every env
-        has finished an episode: those that are over first are the short ones, successes most of all.
-        """
+        """Means over total(): success, picked, return, length, and what the task measures and logs.
+        Empty before every env has finished an episode, because the first to end are short ones,
+        mostly successes."""
         return {} if self.waiting else self.total().means()
 
     def rows(self) -> list[dict[str, float]]:
-        """What take_up() takes: EpisodeSums.by_name() of each rollout."""
+        """EpisodeSums.by_name() of each rollout, for take_up()."""
         return [sums.by_name(self._names) for sums in self._rollouts]
 
     def take_up(self, rows: Iterable[Mapping[str, float]], waiting: int) -> None:
-        """Goes on from rows in which less may be named than the task says now: the rest is not known."""
+        """Continues from the result of rows(). What the task reports now but the rows lack is
+        unknown."""
         self.waiting = waiting
         self._rollouts.clear()
         self._rollouts.extend(EpisodeSums.of(row, self._names) for row in rows)

@@ -1,4 +1,4 @@
-"""CUDA graphs: what a network launches, recorded once and replayed as one."""
+"""CUDA graphs: the launches of a network, recorded once and then replayed as a whole."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from torch import Tensor
 Tensors = tuple[Tensor | None, ...]
 Function = Callable[..., Tensors]
 Record = Callable[[Function, Tensors], tuple[Tensors, Callable[[], None]]]
-"""Runs a function on tensors that stay where they are. Returns its results, which stay where they are as
-well, and what computes them again from what the tensors hold then."""
+"""Records a function of tensors at fixed addresses. Returns its results, also at fixed addresses,
+and a function that computes them anew from the tensors' current contents."""
 
 
 class Replayed:
-    """A function of tensors of always the same shapes, which `record` keeps as a graph at the first call.
+    """A function of tensors with fixed shapes, which `record` records as a graph at the first call.
 
-    A call copies its arguments to where the graph reads them; its results are overwritten by the next call.
-    Parameters and buffers that the function reads have to be changed in place, as optimizers do.
+    A call copies its arguments to where the graph reads them; the next call overwrites its results.
+    Parameters and buffers that the function reads must be changed in place, as optimizers do.
     """
 
     def __init__(self, function: Function, record: Record):
@@ -30,7 +30,7 @@ class Replayed:
         self._replay: Callable[[], None] | None = None
 
     def prepare(self, *arguments: Tensor | None) -> None:
-        """Records what it does of such arguments, unless it has."""
+        """Records the function for arguments of these shapes, unless that is done."""
         if self._replay is None:
             self._places = tuple(None if one is None else one.clone() for one in arguments)
             self._results, self._replay = self._record(self._function, self._places)
@@ -59,9 +59,9 @@ class Replayed:
 
 
 def record_cuda(function: Function, places: Tensors) -> tuple[Tensors, Callable[[], None]]:
-    """Records on the current CUDA device. Libraries choose their kernels and workspaces in the first calls, on
-    a stream of their own, as torch's documentation of CUDA graphs asks for. What other threads do on the
-    device meanwhile spoils it in versions of torch before 2.1."""
+    """Records on the current CUDA device. The first calls, in which libraries choose their kernels
+    and workspaces, run on a separate stream, as torch's documentation of CUDA graphs requires. In
+    versions of torch before 2.1, use of the device by other threads spoils the recording."""
     warming = torch.cuda.Stream()
     warming.wait_stream(torch.cuda.current_stream())
     with torch.cuda.stream(warming):

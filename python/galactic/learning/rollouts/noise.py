@@ -1,7 +1,7 @@
 """Random numbers that depend on (seed, env, step) only, or in evaluations on (seed, episode, step).
 
-A sample of an action must not depend on which rank, half-batch or order an env is stepped in, and a
-resumed run must go on with the numbers that it would have had (galactic/hashing.py).
+A sample of an action must not depend on the rank, half-batch or order in which an env is stepped,
+and a resumed run must continue with the same numbers (galactic/hashing.py).
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from galactic.learning.policies.distributions import DECISIONS
 
 
 def noise_of(seed: int, keys: np.ndarray, steps: np.ndarray, motions: int) -> np.ndarray:
-    """float32 [..., motions + 2]: standard normal numbers, then two uniform in [0, 1), for each of
-    `keys` and `steps`, whole numbers that broadcast to [...]."""
+    """float32 [..., motions + 2]: standard normal numbers, then two uniform in
+    [0, 1), for each pair of `keys` and `steps`, whole numbers that broadcast to [...]."""
     pairs = (motions + 1) // 2
     bits = hashed(seed, keys, steps, pairs + 1)
-    # The two halves of each hash, as 24 bits each: what a float in [0, 1) holds.
+    # Two numbers from each hash, of 24 bits each, as many as a float in [0, 1) holds.
     scale = np.float32(2.0**-24)
     first = (bits >> np.uint64(40)).astype(np.float32) * scale
     second = ((bits >> np.uint64(8)) & np.uint64(0xFFFFFF)).astype(np.float32) * scale
@@ -35,23 +35,24 @@ def noise_of(seed: int, keys: np.ndarray, steps: np.ndarray, motions: int) -> np
 def action_noise(seed: int, envs: range, steps: range, motions: int) -> np.ndarray:
     """The noise of rollouts: float32 [steps, envs, motions + 2], see noise_of().
 
-    `envs` are numbers over all ranks, `steps` those since the run began.
+    `envs` are numbered over all ranks, `steps` from the beginning of the run.
     """
     return noise_of(seed, _numbers(envs)[None, :], _numbers(steps)[:, None], motions)
 
 
 def episode_noise(seed: int, episodes: np.ndarray, steps: np.ndarray, motions: int) -> np.ndarray:
-    """The noise of evaluations and validations: float32 [n, motions + 2], for each of `episodes` and how many steps of
-    it are done. It is not that of rollouts with the same seed, which a policy has learned with."""
+    """The noise of evaluations and validations: float32 [n, motions + 2], for each of `episodes`
+    and the number of its steps done. It differs from the noise of rollouts with the same seed, with
+    which the policy learned."""
     return noise_of(seed ^ 0x706C6179, episodes, steps, motions)
 
 
 def mini_batch_envs(seed: int, epoch: int, envs: range, parts: int) -> np.ndarray:
     """Splits the envs of a rank into mini-batches, differently in each epoch; int64 [parts, n].
 
-    Of each `parts` consecutive envs, one goes into each mini-batch. So all mini-batches of all ranks
-    have the same size, and R ranks of N envs see the same mini-batches as one rank of R N. `epoch`
-    counts from the start of the run; the numbers returned are relative to `envs`.
+    Of each group of `parts` consecutive envs, one goes into each mini-batch. So all mini-batches of
+    all ranks have the same size, and R ranks of N envs have the same mini-batches as one rank of R
+    N. `epoch` counts from the start of the run; the returned numbers are relative to `envs`.
     """
     blocks = range(envs.start // parts, envs.stop // parts)
     keys = hashed(seed ^ 0x6D696E69, _numbers(blocks), np.array([epoch]), parts)

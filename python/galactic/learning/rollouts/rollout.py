@@ -1,4 +1,4 @@
-"""The memory of a rollout, and the advantages of what was done in it."""
+"""The memory of a rollout, and the advantages of its actions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Rollout:
     """T steps of N envs. Row t of the observations is what the policy saw before action t.
 
     Row T of `state`, `rgb`, `depth`, `values` and `starts` belongs to the state after the last step.
-    `steps` is how many of the T steps are filled: a rank that was pre-empted has fewer.
+    `steps` is how many of the T steps are filled: fewer than T if the rank was cut short.
     """
 
     state: Tensor  # [T + 1, N, S] float32
@@ -60,7 +60,7 @@ class Rollout:
         )
 
     def row(self, step: int, envs: slice) -> Observation:
-        """What some envs give before action `step`, to be written."""
+        """The rows of some envs before action `step`, for the envs to write to."""
 
         def part(rows: Tensor | None) -> Tensor | None:
             return None if rows is None else rows[step, envs]
@@ -68,7 +68,7 @@ class Rollout:
         return Observation(self.state[step, envs], part(self.rgb), part(self.depth))
 
     def inputs(self, first: int, last: int, envs: slice | Tensor, previous: bool) -> Inputs:
-        """What a policy sees in the steps [first, last) of some envs."""
+        """The inputs of a policy in the steps [first, last) of some envs."""
 
         def part(tensor: Tensor | None) -> Tensor | None:
             return None if tensor is None else tensor[first:last, envs]
@@ -87,10 +87,10 @@ class Rollout:
 
 
 class RolloutSource(Protocol):
-    """What fills rollouts for the trainer: a policy that acts, or demonstrations."""
+    """Fills rollouts for the trainer, from a policy that acts or from demonstrations."""
 
     episodes: EpisodeSums
-    """Of those that ended in the latest rollout."""
+    """The sums of the episodes that ended in the latest rollout."""
     stopwatch: Stopwatch
 
     @property
@@ -99,7 +99,7 @@ class RolloutSource(Protocol):
 
     @property
     def plays_episodes(self) -> bool:
-        """Whether there are episodes of the policy's, of which the curves can tell how they went."""
+        """Whether the policy plays episodes, whose results the curves can show."""
 
     @property
     def waiting(self) -> int:
@@ -111,21 +111,23 @@ class RolloutSource(Protocol):
     def collect(
         self, update: int, should_stop: Callable[[int], bool] = lambda step: False
     ) -> Rollout:
-        """The next rollout, of the update with this number: its full length, or until should_stop(step) where it
-        plays. Overwritten by the next call."""
+        """The next rollout, for the update with this number. A source that plays may cut it short
+        when should_stop(step). The next call overwrites it."""
 
     def state_dict(self) -> dict[str, Tensor]:
-        """All that the next collect() depends on, but for the policy."""
+        """Everything that the next collect() depends on, except the policy."""
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
-        """Goes on from there. Raises ValueError where the state is another source's."""
+        """Continues from a state_dict(). Raises ValueError if the state does not fit this
+        source."""
 
 
 def advantages(rewards: Tensor, values: Tensor, ends: Tensor, gamma: float, lam: float) -> Tensor:
     """Generalized advantage estimates (Schulman et al. 2016, equation 16); [T, N].
 
-    values [T + 1, N]; ends [T, N] bool: nothing after such a step counts for it. What a timeout cuts
-    off has to be in `rewards` already, as gamma times the value of the last observation.
+    values [T + 1, N]; ends [T, N] bool: rewards after such a step do not count for it and the steps
+    before it. The value of what a timeout cuts off must be in `rewards` already, as gamma times the
+    value of the last observation.
     """
     goes_on = (~ends).to(rewards.dtype)
     delta = rewards + gamma * values[1:] * goes_on - values[:-1]

@@ -9,7 +9,8 @@ from typing import Any
 
 
 class Stopwatch:
-    """Adds up wall-clock seconds by name. Work on a GPU counts where somebody waits for it."""
+    """Adds up wall-clock seconds by name. Work on a GPU counts for the name under which its result
+    is awaited."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
@@ -29,8 +30,8 @@ class Stopwatch:
         return [*shares, ("the rest", max(0.0, 1.0 - sum(share for _, share in shares)))]
 
     def tables(self, updates: int, horizon: int, of_rollout: Collection[str]) -> dict[str, Any]:
-        """Tables 5 and 6 of the paper, milliseconds, after so many updates of rollouts of `horizon` steps,
-        which the names `of_rollout` are parts of."""
+        """Tables 5 and 6 of the paper, in milliseconds, after `updates` updates with rollouts of
+        `horizon` steps. `of_rollout`: the names that are parts of a rollout."""
         per_update = {
             name: 1e3 * seconds / max(updates, 1) for name, seconds in self.seconds.items()
         }
@@ -55,21 +56,21 @@ class RunClock:
         self.start()
 
     def start(self) -> None:
-        """The clock on the wall: this part begins now."""
+        """Starts the wall clock of this part of the run."""
         self._started = time.perf_counter()
 
     def take_up(self, seconds: float, processor_seconds: float) -> None:
         """Adds the parts before this one."""
         self._seconds_before = seconds
-        # This process has used some before it took up the run.
+        # Processor time that this process used before it took up the run does not count.
         self._processor_seconds_before = processor_seconds - time.process_time()
 
     @property
     def seconds(self) -> float:
-        """On the wall."""
+        """Wall-clock seconds."""
         return self._seconds_before + time.perf_counter() - self._started
 
     @property
     def processor_seconds(self) -> float:
-        """Of this rank's processors."""
+        """Processor seconds of this rank."""
         return self._processor_seconds_before + time.process_time()
