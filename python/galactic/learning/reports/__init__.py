@@ -1,1 +1,1 @@
-"""What people look at: the progress line, curves and their page, contact sheets and videos."""
+"""Reports for people: the progress line, curves and their page, contact sheets and videos."""

@@ -1,4 +1,4 @@
-"""Several runs side by side: how far they are, how well they do, and in which settings they differ."""
+"""Compares runs: how far they are, how well they do, and in which settings they differ."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SEED = "seed"
 
 
 class Success(NamedTuple):
-    """A share of so many episodes."""
+    """A share of successes among `episodes` episodes."""
 
     share: float
     episodes: float
@@ -34,11 +34,11 @@ class Success(NamedTuple):
 
 
 class ComparedRun(NamedTuple):
-    """A run, as far as it is."""
+    """A run in its current state."""
 
     name: str
     settings: Mapping[str, str]
-    """What it is about, as one types it, by name."""
+    """What defines the run, as one types it, by name."""
     wanted_steps: int
     curves: Sequence[Mapping[str, float | None]]
     validations: Sequence[Success]
@@ -50,14 +50,14 @@ class ComparedRun(NamedTuple):
 
     @property
     def speed(self) -> float | None:
-        """Steps per second over all of its time."""
+        """Steps per second over the whole run."""
         seconds = self._last("seconds")
         speed = self.steps / seconds if seconds else math.inf
         return speed if math.isfinite(speed) else None
 
     @property
     def in_training(self) -> float | None:
-        """The share of successes among the latest episodes of the training."""
+        """The share of successes among the latest episodes of training."""
         return self._last("success")
 
     @property
@@ -71,7 +71,7 @@ class ComparedRun(NamedTuple):
 
     @property
     def but_for_its_seed(self) -> tuple[tuple[str, str], ...]:
-        """What runs have in common that differ in nothing but the seed."""
+        """All settings except the seed: equal for runs that differ in nothing else."""
         return tuple(sorted((n, value) for n, value in self.settings.items() if n != SEED))
 
     def _last(self, column: str) -> float | None:
@@ -80,8 +80,8 @@ class ComparedRun(NamedTuple):
 
 
 def read(folders: Sequence[pathlib.Path]) -> list[ComparedRun]:
-    """The runs of these folders. Raises galactic.Error where one holds none, and CheckpointError where its files are
-    not those of a run."""
+    """The runs in these folders. Raises galactic.Error if a folder holds no run, and
+    CheckpointError if its files are not those of a run."""
     for number, folder in enumerate(folders):
         if folder.resolve() in [other.resolve() for other in folders[:number]]:
             raise SettingsError(f"{folder} is named twice; name it once")
@@ -91,7 +91,7 @@ def read(folders: Sequence[pathlib.Path]) -> list[ComparedRun]:
 def _read(folder: pathlib.Path) -> ComparedRun:
     run, file = run_in(folder), folder / "curves.csv"
     with refusing(f"{file} is no table of curves", "leave this run out"):
-        # There is none before the first row.
+        # The file does not exist before the first row.
         rows = read_curves(file) if file.exists() else []
         for row in rows:
             _require_numbers(row)
@@ -112,7 +112,7 @@ _MOST = {
 
 
 def _require_numbers(row: Mapping[str, float | None]) -> None:
-    """Raises ValueError where a row is none of a run's, as far as it is shown as numbers."""
+    """Raises ValueError if the numbers to be shown from a row cannot be those of a run."""
     if row.get("steps") is None or row.get("seconds") is None:
         raise ValueError("found a row without steps or seconds")
     for column, most in _MOST.items():
@@ -123,8 +123,8 @@ def _require_numbers(row: Mapping[str, float | None]) -> None:
 
 
 def _success_of(row: Mapping[str, float | None]) -> Success | None:
-    """Of the validation that a row is of, if it is of one. Raises ValueError where it does not say of how many
-    episodes."""
+    """The success of the validation in a row, or None. Raises ValueError if the row lacks the
+    number of episodes."""
     share, episodes = row.get(f"{VALIDATION}success"), row.get("episodes")
     if share is None:
         return None
@@ -144,7 +144,8 @@ def _settings_of(run: Run, folder: pathlib.Path) -> dict[str, str]:
         "demonstrations": " ".join(map(str, run.demonstrations)) or None,
     }
     found = {name: str(typed(value)) for name, value in {**values, **about}.items()}
-    # Code of the user's is what its file says, wherever that was; of the simulation's options, each is one.
+    # User code is compared by the contents of its file, not by its path; each option of the
+    # simulation is compared by itself.
     copies = {name: folder / name for name in own_code.COPIES.values()}
     found |= {name: _digest(copy) for name, copy in copies.items() if copy.is_file()}
     for word in words:
@@ -156,18 +157,18 @@ def _settings_of(run: Run, folder: pathlib.Path) -> dict[str, str]:
 
 
 def _digest(file: pathlib.Path) -> str:
-    """Eight digits of the hash of a file, by which one tells two apart."""
+    """Eight digits of the hash of a file, enough to tell two files apart."""
     return hashlib.sha256(file.read_bytes()).hexdigest()[:8]
 
 
 def differing(runs: Sequence[ComparedRun]) -> list[str]:
-    """The settings that are not the same in all of them, but for the steps, which stand in every table."""
+    """The settings that differ between runs, except the steps, which are in every table."""
     names = dict.fromkeys(name for run in runs for name in run.settings if name != "steps")
     return [name for name in names if len({run.settings.get(name) for run in runs}) > 1]
 
 
 def table_of(runs: Sequence[ComparedRun]) -> list[list[str]]:
-    """A row of names and a row for each run."""
+    """A header row and a row for each run."""
     names = differing(runs)
     rows = [["run", "steps", "steps/s", "last validation", "best validation", "training", *names]]
     for run in runs:
@@ -187,8 +188,8 @@ def table_of(runs: Sequence[ComparedRun]) -> list[list[str]]:
 
 
 def table_of_seeds(runs: Sequence[ComparedRun]) -> list[list[str]]:
-    """A row of names and a row for each two or more runs that differ in their seed alone; nothing where there are
-    none. Of runs with the same seed, which are one run made twice, the first counts."""
+    """A header row and a row for each group of runs that differ only in their seed; empty if there
+    is no such group. Of runs with the same seed, which are repetitions, the first counts."""
     alike: dict[tuple[tuple[str, str], ...], dict[str, ComparedRun]] = {}
     for run in runs:
         alike.setdefault(run.but_for_its_seed, {}).setdefault(run.settings.get(SEED, ""), run)
@@ -205,7 +206,7 @@ def table_of_seeds(runs: Sequence[ComparedRun]) -> list[list[str]]:
 
 
 def _spread(found: Iterable[Success | None]) -> str:
-    """Mean, and from the least to the most."""
+    """Mean, minimum and maximum."""
     shares = [100.0 * one.share for one in found if one is not None]
     if not shares:
         return NOTHING
@@ -231,7 +232,7 @@ def _aligned(rows: Sequence[Sequence[str]]) -> str:
 
 
 def page_of(runs: Sequence[ComparedRun]) -> str:
-    """The page that overlays their curves, with the tables below, as text."""
+    """The page that overlays the runs' curves, with the tables below, as text."""
     tables = {run.name: _columns_of(run.curves) for run in runs}
     below = _under("Runs", OF_SHARES, table_of(runs))
     seeds = table_of_seeds(runs)

@@ -1,4 +1,4 @@
-"""The curves of a run: a table in CSV, and a page that draws it."""
+"""The curves of a run: a CSV table, and a page that draws it."""
 
 from __future__ import annotations
 
@@ -42,29 +42,31 @@ COLUMNS = (
     "picked",
     "validation_picked",
 )
-"""Steps, seconds and updates since the run began, over all its parts; sps: steps per second since the
-row before. Success, return and length: means of the latest episodes of training, from when every env
-has finished one, and so is picked, the share of those in which the target has been in the hand;
-`validation_...`: of the episodes for validation, in rows that have them. Episodes: how many episodes that are.
-Log_std: the mean of the policy's, where they are parameters. Teacher_kl: the divergence from what the teacher
-would do, nats per step, while it counts."""
+"""`steps`, `seconds` and `updates` count from the beginning of the run, over all its parts; `sps`:
+steps per second since the previous row. `success`, `return`, `length` and `picked` (the share of
+episodes in which the target was in the hand) are means over the latest episodes of training, as
+soon as every env has finished one; `validation_...`: the same for the validation episodes, in rows
+of validations. `episodes`: how many episodes these are. `log_std`: the mean of the policy's
+log-stds, if they are parameters. `teacher_kl`: the divergence from what the teacher would do, nats
+per step, while the teacher counts."""
 VALIDATION = "validation_"
 TABLE = "curves.csv"
 
 
 def columns_of(names: OwnNames) -> tuple[str, ...]:
-    """COLUMNS, and behind them, before those of a callback, means of what a task of one's own says, of training and
-    validations."""
+    """COLUMNS, then the means of what a user-defined task reports, of training and validations. The
+    columns of a callback follow these."""
     means = names.of_means
     return (*COLUMNS, *means, *(VALIDATION + name for name in means))
 
 
 PAGE_SHARE = 0.01
-"""The most of a run's time that the page may take, which is written whole each time."""
+"""The largest share of a run's time that writing the page may take; it is written as a whole each
+time."""
 
 
 class Curves:
-    """Rows of columns_of(names), and the files that show them. Not given values are None."""
+    """Rows of columns_of(names), and the files that show them. Missing values are None."""
 
     def __init__(self, folder: pathlib.Path | None, title: str, names: OwnNames = OwnNames()):
         self._folder = folder
@@ -72,7 +74,8 @@ class Curves:
         self.columns = columns_of(names)
         self._own = len(self.columns)
         self.rows: list[list[float | None]] = []
-        # How many of them the table has; None: it is none of this run's yet, or has others.
+        # How many rows the table file has; None if the file is not from this process or has other
+        # columns.
         self._in_table: int | None = None
         self._next_page = 0.0
 
@@ -82,7 +85,7 @@ class Curves:
 
     @property
     def added(self) -> list[str]:
-        """The columns of a callback, which come as it names them."""
+        """The columns that a callback has added, in order."""
         return list(self.columns[self._own :])
 
     def _widen(self, names: Iterable[str]) -> None:
@@ -92,11 +95,12 @@ class Curves:
             self.columns = (*self.columns, *new)
             for row in self.rows:
                 row += [None] * len(new)
-            self._in_table = None  # which has a row of names to begin with
+            self._in_table = None  # the file begins with the old names, so write it anew
 
     def take_up(self, count: int, added: Sequence[str]) -> int:
-        """Goes on behind the first `count` rows of the table, which may lack some of the columns: those of a callback
-        are `added`. Returns how many it has of them. The others leave it with the next write()."""
+        """Continues after the first `count` rows of the table file, which may lack some columns.
+        `added`: the columns of a callback. Returns how many of these rows the file has. The next
+        write() removes further rows from it."""
         self._widen(added)
         file = None if self._folder is None else self._folder / TABLE
         before = read_curves(file)[:count] if file is not None and file.exists() else []
@@ -104,7 +108,7 @@ class Curves:
         return len(self.rows)
 
     def latest_validation(self) -> dict[str, float]:
-        """Means of the latest validation, by their names in training; nothing where there was none."""
+        """Means of the latest validation, by their names in training; empty if there was none."""
         of_validation = [n for n, name in enumerate(self.columns) if name.startswith(VALIDATION)]
         for row in reversed(self.rows):
             found = [(self.columns[n], row[n]) for n in of_validation]
@@ -115,9 +119,9 @@ class Curves:
 
     def write(self, settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]],
               *, is_last: bool = True) -> Error | None:  # fmt: skip
-        """Brings curves.csv up to date, and curves.html: after the last row in any case, before it only
-        where that takes no more than PAGE_SHARE of the time. Nothing without a folder. Raises Error where the
-        table cannot be written; returns the one of the page, which can be made again."""
+        """Brings curves.csv up to date, and curves.html: always after the last row, but earlier
+        only as often as PAGE_SHARE allows. Does nothing without a folder. Raises Error if the table
+        cannot be written. An Error of the page, which can be made again, is returned."""
         if self._folder is None:
             return None
         self._write_table(self._folder / TABLE)
@@ -135,15 +139,16 @@ class Curves:
         return None
 
     def keep(self) -> int:
-        """Has all rows on the disk, for a checkpoint, from which take_up() goes on. Returns how many there are."""
+        """Makes sure that all rows are on the disk before a checkpoint counts them. Returns their
+        number, for take_up()."""
         if self._folder is not None:
             self._write_table(self._folder / TABLE)
             sync(self._folder / TABLE)
         return len(self.rows)
 
     def _write_table(self, file: pathlib.Path) -> None:
-        """The first time the whole table, which a run that was killed may have left with more rows, or
-        with a part of one; from then on what is new."""
+        """Writes the whole table the first time, because a killed run may have left additional or
+        partial rows; afterwards, appends the new rows."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         if self._in_table is None:
@@ -158,7 +163,8 @@ class Curves:
 
 
 def _append(file: pathlib.Path, text: str) -> None:
-    """Adds whole lines to a file, in one go, so that a process that ends leaves them whole."""
+    """Appends whole lines to a file in a single write, so that a process that ends leaves no
+    partial line."""
     try:
         with open(file, "a", encoding="utf-8") as handle:
             handle.write(text)
@@ -168,20 +174,21 @@ def _append(file: pathlib.Path, text: str) -> None:
 
 
 def _cell(value: float | None) -> str:
-    """Whole numbers whole: nine digits do not hold the steps of a long run."""
+    """A value as text. Whole numbers keep all their digits: nine are too few for the steps of a
+    long run."""
     if value is None:
         return ""
     return str(value) if isinstance(value, int) else f"{value:.9g}"
 
 
 def _number(text: str) -> float:
-    """Of which _cell() makes the same text again."""
+    """The inverse of _cell()."""
     return int(text) if text.isdecimal() else float(text)
 
 
 def read_curves(file: pathlib.Path) -> list[dict[str, float | None]]:
-    """The rows of a curves.csv, but for a last one that is not whole: of a run that a full disk or a
-    power failure has ended."""
+    """The rows of a curves.csv, except a partial last one, as a full disk or a power failure may
+    leave it."""
     lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
     whole = [line for line in lines if line.endswith("\n")]
     return [

@@ -1,4 +1,4 @@
-"""Rows of the curves for a program of one's own, such as an experiment tracker."""
+"""Passes rows of the curves to the user's own program, such as an experiment tracker."""
 
 from __future__ import annotations
 
@@ -9,21 +9,22 @@ from typing import Any
 from galactic.learning.user_code import own_code
 
 TakeRow = Callable[[Mapping[str, float]], object]
-"""Takes a row: what is known of the columns of reports.curves, by name."""
+"""Takes a row: the known values of the columns of reports.curves, by name."""
 
 
 MakeTaker = Callable[[pathlib.Path, Mapping[str, Any]], TakeRow]
-"""Makes one for a run in this folder, with these settings."""
+"""Makes a TakeRow for a run in this folder, with these settings."""
 
 
 def maker(text: str) -> MakeTaker:
-    """The function that `text` names (own_code.named()). Its file runs now; what that raises is the caller's."""
+    """The function that `text` names (own_code.named()). Its file runs now; exceptions of the file
+    reach the caller."""
     return own_code.factory_of(own_code.named(text, "--log-to"), "what takes a row")
 
 
 class Log:
-    """Hands rows on. What is raised then is told, once of each kind, and the run goes on without: a tracker that cannot
-    be reached costs no training."""
+    """Passes rows on. An exception is reported, once of each type, and the run continues: a tracker
+    that cannot be reached must not end the training."""
 
     def __init__(self, take: TakeRow, say: Callable[[str], None]):
         self._take = take
@@ -34,7 +35,8 @@ class Log:
         self._try(lambda: self._take(dict(values)), "the row is lost, and the run goes on")
 
     def close(self) -> None:
-        """Says that no more rows come: calls close() of what takes them, or else finish(), if it has any."""
+        """Signals that no more rows follow: calls close() of the taker, or finish() if it has no
+        close()."""
         for name in ("close", "finish"):
             end = getattr(self._take, name, None)
             if callable(end):
@@ -44,7 +46,7 @@ class Log:
     def _try(self, work: Callable[[], object], outcome: str) -> None:
         try:
             work()
-        except Exception as error:  # of a stranger's code
+        except Exception as error:  # user code may raise anything
             kind = type(error).__name__
             if kind not in self._told:
                 self._told.add(kind)

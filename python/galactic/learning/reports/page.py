@@ -1,4 +1,5 @@
-"""Self-contained pages with curves, of one run or of several: no requests, light and dark."""
+"""Self-contained pages with the curves of one or several runs: they load nothing, and have a light
+and a dark mode."""
 
 from __future__ import annotations
 
@@ -17,7 +18,8 @@ OF_VALIDATION = "validation_"
 
 
 class Line(NamedTuple):
-    """A line of a chart: a column, its name in the legend, and which of the page's tables it is of."""
+    """A line of a chart: a column, its label in the legend, and the number of its table in the
+    page."""
 
     column: str
     label: str
@@ -25,7 +27,7 @@ class Line(NamedTuple):
 
 
 class Table(NamedTuple):
-    """What curves.csv has of a run."""
+    """The contents of a curves.csv."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[float | None]]
@@ -33,7 +35,8 @@ class Table(NamedTuple):
 
 @dataclass(frozen=True)
 class Chart:
-    """`unit`: of the vertical axis, which has all the numbers of `axis` in any case."""
+    """A chart. `unit`: the unit of the vertical axis, whose range always includes the numbers of
+    `axis`."""
 
     title: str
     unit: str
@@ -66,7 +69,8 @@ LEARNING = (
 
 
 def _charts(columns: Sequence[str]) -> list[Chart]:
-    """What a task of one's own says stands beside what every task has."""
+    """The charts for a page: those of every run, and one for each thing that a user-defined task
+    reports."""
     measured = [
         _of_episodes(name.removeprefix(MEASURE), "mean of episodes", name)
         for name in columns
@@ -81,7 +85,7 @@ def _charts(columns: Sequence[str]) -> list[Chart]:
 
 
 MOST_POINTS = 1500
-"""Longer runs are thinned out for the page; the CSV has all."""
+"""Rows of longer runs are thinned out for the page; the CSV has all of them."""
 
 
 def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[float | None]],
@@ -97,8 +101,8 @@ def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[floa
 
 
 def overlaid_page(title: str, runs: Mapping[str, Table], below: str) -> str:
-    """A page as text, on which each chart has a line for each of the runs, which have names. `below`: HTML under
-    the charts."""
+    """A page as text, on which each chart has a line for each of the named runs. `below`: HTML
+    under the charts."""
     columns = dict.fromkeys(name for run in runs.values() for name in run.columns)
     charts = []
     for chart in _charts(list(columns)):
@@ -106,7 +110,7 @@ def overlaid_page(title: str, runs: Mapping[str, Table], below: str) -> str:
             title_of = f"{chart.title}, {line.label}" if len(chart.lines) > 1 else chart.title
             lines = [Line(line.column, name, number) for number, name in enumerate(runs)]
             charts.append(dataclasses.replace(chart, title=title_of, lines=lines))
-    # What a policy is chosen by comes first.
+    # Validations come first, as policies are chosen by them.
     charts.sort(key=lambda chart: not chart.lines[0].column.startswith(OF_VALIDATION))
     return _page(title, list(runs.values()), charts, below)
 
@@ -122,7 +126,7 @@ def _page(title: str, tables: Sequence[Table], charts: Sequence[Chart], below: s
 
 
 def _thinned_out(whole: Table) -> dict[str, Any]:
-    """What a page has of a table: all validations, and of the other rows some."""
+    """The part of a table for the page: all validations, and every n-th of the other rows."""
     columns, rows = whole
     stride = max(1, math.ceil(len(rows) / MOST_POINTS))
     validated = [n for n, name in enumerate(columns) if name.startswith(OF_VALIDATION)]
@@ -141,7 +145,7 @@ def _short(value: float | None) -> float | None:
 
 
 def table(rows: Sequence[Sequence[str]]) -> str:
-    """A table in HTML, each row of which begins with what it is of."""
+    """An HTML table; the first cell of each row is its heading."""
     lines = (
         f"<tr><th>{html.escape(name)}</th>{''.join(f'<td>{html.escape(one)}</td>' for one in cells)}</tr>"
         for name, *cells in rows

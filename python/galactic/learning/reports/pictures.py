@@ -33,7 +33,8 @@ _GREEN, _RED = (24, 110, 52), (150, 40, 36)
 
 @dataclass
 class Film:
-    """An episode, frame by frame: what it began with, and what each step led to."""
+    """An episode as frames: the first shows its beginning, and each other one the result of a
+    step."""
 
     episode: int
     target: str  # the name of the object that is to be moved
@@ -44,7 +45,7 @@ class Film:
     @property
     def label(self) -> str:
         ending = galactic.EpisodeEnd(self.ending).name.lower().replace("_", " ")
-        # The name last, as narrow pictures cut it off.
+        # The name comes last, as narrow pictures cut it off.
         return f"episode {self.episode}: {ending}, {len(self.frames) - 1} steps, {self.target}"
 
     @property
@@ -53,7 +54,8 @@ class Film:
 
 
 def require_tools(video: bool) -> None:
-    """Raises galactic.Error, saying what to install, where what pictures are made with is missing."""
+    """Raises galactic.Error, which says what to install, if a tool for making pictures is
+    missing."""
     try:
         import PIL  # noqa: F401
     except ImportError:
@@ -63,23 +65,23 @@ def require_tools(video: bool) -> None:
 
 
 def require_png(file: pathlib.Path) -> None:
-    """Raises galactic.Error where the name says that a contact sheet would be something else."""
+    """Raises galactic.Error if the name of a contact sheet does not end in .png."""
     if file.suffix.lower() != ".png":
         message = "pictures are PNG files; end the name with .png"
         raise galactic.Error(galactic.ErrorCode.UNSUPPORTED, str(file), message)
 
 
 def require_video(file: pathlib.Path) -> None:
-    """Raises galactic.Error where ffmpeg knows no format by the name: it writes a frame to a file of that
-    name elsewhere."""
+    """Raises galactic.Error if ffmpeg cannot write a format of this name. Tries by writing one
+    frame to a temporary file with the same name."""
     with tempfile.TemporaryDirectory(prefix="galactic-video-") as folder:
         blank = Film(0, "", [np.zeros((HEIGHT, WIDTH, 3), np.uint8)])
         _require_encoded(_encode([blank], pathlib.Path(folder) / file.name), file)
 
 
 def choose(results: Sequence[EpisodeResult], count: int) -> list[int]:
-    """Up to `count` episodes, half of them successes where there are as many, then failures; of each
-    the first."""
+    """Up to `count` episodes: first successes, about half if there are enough of both, then
+    failures; of each kind the first ones."""
     successes = [one.episode for one in results if one.success]
     failures = [one.episode for one in results if not one.success]
     shown = min(len(successes), max((count + 1) // 2, count - len(failures)))
@@ -88,8 +90,9 @@ def choose(results: Sequence[EpisodeResult], count: int) -> list[int]:
 
 def film(world: galactic.World, settings: Settings, actor: Actor, episodes: Sequence[int],
          threads: int, task: MakeTask | None = None) -> list[Film]:  # fmt: skip
-    """Plays `episodes` side by side, one env for each. What a policy does may hang on the last bits of
-    sums, and so on how many envs it acts for: how an episode ended here is told by its film."""
+    """Plays `episodes` side by side, one env for each. A policy's actions may depend on the last
+    bits of sums, and so on how many envs it acts in. So an episode may end differently than in the
+    evaluation; its Film has the ending."""
     envs = len(episodes)
     alone = dataclasses.replace(settings, envs=envs, halves=1, mini_batches=1)
     onlooker = {"camera": "follow", "width": WIDTH, "height": HEIGHT}
@@ -134,8 +137,8 @@ def write_contact_sheet(films: Sequence[Film], file: pathlib.Path) -> None:
 
 
 def write_video(films: Sequence[Film], file: pathlib.Path) -> None:
-    """All films at once, side by side, each until its end; in the format that the name says. A file that
-    is there is replaced by the whole video, or stays."""
+    """Writes all films side by side, each until its end, in the format that the file's name
+    implies. An existing file is replaced only by a complete video."""
     with replacing(file) as place:
         _require_encoded(_encode(films, place), file)
 
@@ -163,7 +166,7 @@ def _encode(films: Sequence[Film], file: pathlib.Path) -> str | None:
         cells.append(cell[_LABEL_HEIGHT:])
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdin is not None and process.stderr is not None
-        with contextlib.suppress(BrokenPipeError):  # It says below why it left.
+        with contextlib.suppress(BrokenPipeError):  # The error output below says why ffmpeg ended.
             for moment in range(max(len(one.frames) for one in films)):
                 for one, cell in zip(films, cells):
                     cell[:] = one.frames[min(moment, len(one.frames) - 1)]

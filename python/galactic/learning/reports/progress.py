@@ -1,4 +1,4 @@
-"""How a run goes, on one line."""
+"""The progress of a run, on one line."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def amount(number: float) -> str:
 
 
 class ProgressLine:
-    """One line that is written over on a terminal; elsewhere plain lines, now and then."""
+    """On a terminal, a line that is overwritten; elsewhere, plain lines from time to time."""
 
     def __init__(self, stream: TextIO | None = None, *, quiet: bool = False,
                  plain_every: float = 15.0):  # fmt: skip
@@ -59,11 +59,12 @@ class ProgressLine:
             put(self._stream, f"{text}\n")
 
     def _cut(self, text: str) -> str:
-        """What fits on a line of the terminal: a longer one could not be written over."""
+        """The part of the text that fits on a line of the terminal: a longer line could not be
+        overwritten."""
         try:
             columns = os.get_terminal_size(self._stream.fileno()).columns
         except OSError:
-            columns = 0  # as those say that do not know
+            columns = 0  # the value that terminals report if they do not know
         return text[: columns - 1] if columns else text
 
     def close(self) -> None:

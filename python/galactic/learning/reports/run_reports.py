@@ -1,4 +1,5 @@
-"""What a run tells while it goes on: rows of the curves, for their files and for who else takes them, and lines."""
+"""What a run reports while it goes on: rows of the curves, for their files and for the user's
+program, and lines of progress."""
 
 from __future__ import annotations
 
@@ -16,38 +17,39 @@ from galactic.learning.user_code.callbacks import CALLBACK
 
 
 class RunReports:
-    """Of the rank that tells; of the others, nothing is heard. `folder` None writes no files."""
+    """The reports of a rank. Only the one with `is_heard` prints and writes; the others are silent.
+    With `folder` None, no files are written."""
 
     def __init__(self, settings: Settings, folder: pathlib.Path | None, title: str, names: OwnNames,
                  clock: RunClock, stopwatch: Stopwatch, *, is_heard: bool):  # fmt: skip
         self.curves = Curves(folder if is_heard else None, title, names)
         self.progress = ProgressLine(quiet=not is_heard)
         self.log: Log | None = None
-        """Who else takes rows of the curves."""
+        """The user's program that also takes rows of the curves."""
         self.added: dict[str, float] = {}
-        """What a callback has said since the latest row."""
+        """What a callback has logged since the latest row."""
         self._settings = settings
         self._clock = clock
         self._stopwatch = stopwatch
-        # Seconds and steps when an update was told last.
+        # Seconds and steps when an update was last reported.
         self._told = (0.0, 0)
         self._speed = 0.0
         self._lacks_page = False
 
     @property
     def are_due(self) -> bool:
-        """Whether the latest update was told long enough ago."""
+        """Whether it is time to report an update again."""
         return self._clock.seconds - self._told[0] >= self._settings.log_every
 
     def speed(self, steps: int) -> float:
-        """Steps per second since an update was told last, when `steps` are done."""
+        """Steps per second since the last reported update, when `steps` are done."""
         seconds, before = self._told
         if steps > before:
             self._speed = (steps - before) / max(self._clock.seconds - seconds, 1e-9)
         return self._speed
 
     def add_row(self, values: Mapping[str, float]) -> None:
-        """With what a callback has said."""
+        """Adds a row, together with what a callback has logged."""
         row = {**values, **self.added}
         self.added.clear()
         self.curves.add(row)
@@ -57,7 +59,8 @@ class RunReports:
 
     def tell_update(self, row: Mapping[str, float], figures: Mapping[str, float], *,
                     imitates: bool, is_last: bool) -> None:  # fmt: skip
-        """`figures` are those of recent episodes; who `imitates` has none, and a loss."""
+        """Reports an update. `figures` are those of recent episodes; a run that `imitates` has
+        none, and shows its loss."""
         steps = int(row["steps"])
         self._told = (self._clock.seconds, steps)
         self.add_row(row)
@@ -76,7 +79,7 @@ class RunReports:
         self.write(is_last=is_last)
 
     def tell_validation(self, steps: int, found: EpisodeSums) -> dict[str, float]:
-        """Returns the row of the curves."""
+        """Reports a validation. Returns its row of the curves."""
         means = found.means()
         named = {VALIDATION + name: value for name, value in means.items()}
         row = {
@@ -94,7 +97,7 @@ class RunReports:
         return row
 
     def write(self, *, is_last: bool) -> None:
-        """Brings the files of the curves up to date. Of a page that cannot be written, the first time is told."""
+        """Brings the files of the curves up to date. Reports once if the page cannot be written."""
         with self._stopwatch.time("reports"):
             shares = self._stopwatch.shares(self._clock.seconds)
             lost = self.curves.write(self._settings.to_dict(), shares, is_last=is_last)
@@ -103,8 +106,9 @@ class RunReports:
             self.progress.say(f"{lost}; the run goes on, and tries again")
 
     def take_up(self, count: int, columns: Sequence[str], added: Mapping[str, float]) -> None:
-        """Goes on behind so many rows, and with what a callback said after them, which has added `columns`. Raises
-        ValueError where their file has something else."""
+        """Continues after `count` rows, and with the values `added` that a callback has logged
+        since. `columns`: those that the callback has added. Raises ValueError if the file of the
+        curves is not valid."""
         found = self.curves.take_up(
             count, [str(one) for one in columns if str(one).startswith(CALLBACK)]
         )
@@ -115,12 +119,12 @@ class RunReports:
         self.added = {name: value for name, value in added.items() if name.startswith(CALLBACK)}
 
     def begin_at(self, steps: int) -> None:
-        """Measures speed from here on."""
+        """Measures the speed from `steps` on."""
         self._told = (self._clock.seconds, steps)
 
 
 def _measured(means: Mapping[str, float]) -> list[str]:
-    """What a task of one's own measures, for a line."""
+    """What a user-defined task measures, for a line of progress."""
     return [
         f"{name.removeprefix(MEASURE)} {value:.3g}"
         for name, value in means.items()

@@ -1,16 +1,16 @@
-"""Shares of episodes, with how sure one can be of them."""
+"""Shares of episodes, with confidence intervals."""
 
 from __future__ import annotations
 
 import math
 
 NORMAL_QUANTILE = 1.959963984540054
-"""Of 97.5 %, for intervals of 95 %."""
+"""The 97.5 % quantile of the normal distribution, for intervals of 95 %."""
 
 
 def interval(share: float, count: float) -> tuple[float, float]:
-    """The interval of 95 % of a share of `count` (Wilson 1927): within it is the rate of which as many independent
-    episodes have this share. All shares, 0 to 1, where none was counted."""
+    """The 95 % confidence interval of the rate behind a share of `count` independent episodes
+    (Wilson 1927). From 0 to 1 if `count` is 0."""
     if count <= 0:
         return 0.0, 1.0
     square = NORMAL_QUANTILE**2
