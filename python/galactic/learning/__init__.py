@@ -1,8 +1,8 @@
 """Recurrent, distributed PPO for galactic's worlds: what `python3 -m galactic.train` runs.
 
-The only part of the package that needs torch. Start reading at `trainer.py`. For training loops of one's own: encoders
-and sequences have what networks are made of, read_policy() reads what the trainer has saved, and export_module() makes
-policy packs.
+The only part of the package that needs torch. Start reading at `trainer.py`. For your own training
+loops, `encoders` and `sequences` have the parts of networks, read_policy() reads what the trainer
+has saved, and export_module() makes policy packs.
 """
 
 from galactic.learning.packs.own_modules import ActionParameters, export_module
