@@ -199,10 +199,11 @@ void SceneComposer::placeLinks(const ReceptacleParent& placed, const SourceRobot
       const LinkShape& shape = shapes[visual];
       if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry); mesh != nullptr) {
         const SourceAsset& asset = furniture.meshes[mesh->mesh];
-        const std::string file =
-            asset.read.files.empty() ? asset.name : asset.read.files.front().name;
-        // Its points are turned otherwise than those of the same file as an object.
-        const std::string key = "URDF " + (urdf.parent_path() / file).lexically_normal().string();
+        const fs::path file = urdf.parent_path() / asset.read.files.front().name;
+        // Its points are turned otherwise than those of the same file as an object. Several meshes
+        // may stand in the robot's file itself.
+        const std::string key =
+            fmt::format("URDF {} mesh {}", file.lexically_normal().string(), asset.name);
         const std::uint32_t first = merger_.take(key, asset, urdf.parent_path(), shape.color);
         merger_.place(first, asset, compose(world_from_link, shape.link_from_shape), name);
         continue;

@@ -106,10 +106,11 @@ std::array<double, 3> sizeInFile(const SourceAsset& asset) {
 }
 
 /// A mesh that stands in the robot's file, as importMesh would give it: its convex hull where it
-/// has points only, as in MuJoCo.
-SourceAsset assetOf(const DescribedMesh& described) {
+/// has points only, as in MuJoCo. `file`: the name of the robot's file.
+SourceAsset assetOf(const DescribedMesh& described, const std::string& file) {
   SourceAsset asset;
   asset.name = described.name;
+  asset.read.files.push_back({.name = file});
   SourceMesh& mesh = asset.meshes.emplace_back();
   mesh.name = described.name;
   for (const auto& [x, y, z] : described.points) {
@@ -200,7 +201,7 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
 GeometryBuilder::LoadedMesh& GeometryBuilder::loadOwn(const DescribedShape& shape) {
   const auto [entry, is_new] = loaded_own_.try_emplace(shape.own_mesh);
   if (!is_new) return entry->second;
-  robot_.meshes.push_back(assetOf(own_meshes_[shape.own_mesh]));
+  robot_.meshes.push_back(assetOf(own_meshes_[shape.own_mesh], nameRelativeTo(path_, path_)));
   entry->second.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1);
   entry->second.size = sizeInFile(robot_.meshes.back());
   return entry->second;

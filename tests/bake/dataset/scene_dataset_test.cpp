@@ -248,6 +248,45 @@ TEST(SceneDataset, TakesTheStatedJointPositionsOfFurniture) {
   }
 }
 
+/// Furniture of two meshes, named a and m, that stand in its file: boxes as wide as stated.
+std::string mjcfOfBoxes(double a, double m) {
+  const auto mesh = [](std::string_view name, double width) {
+    return fmt::format(
+        "<mesh name='{0}' vertex='0 0 0 {1} 0 0 0 1 0 {1} 1 0 0 0 1 {1} 0 1 0 1 1 {1} 1 1'/>", name,
+        width);
+  };
+  return fmt::format(
+      "<mujoco><asset>{}{}</asset><worldbody><body name='b'><geom type='mesh' mesh='a'/>"
+      "<geom type='mesh' mesh='m'/></body></worldbody></mujoco>",
+      mesh("a", a), mesh("m", m));
+}
+
+TEST(SceneDataset, PlacesFurnitureWhoseMeshesStandInItsFile) {
+  const SmallDataset small;
+  small.write("urdf/first.xml", mjcfOfBoxes(1, 2));
+  small.write("urdf/second.xml", mjcfOfBoxes(3, 4));
+  for (const std::string name : {"first", "second"}) {
+    small.write("urdf/cupboard/" + name + ".ao_config.json",
+                fmt::format(R"({{"urdf_filepath": "../{}.xml"}})", name));
+  }
+  small.writeScene("inline", R"({"stage_instance": {"template_name": "NONE"},
+      "articulated_object_instances": [{"template_name": "first"}, {"template_name": "second"}]})");
+  auto config = std::string(SmallDataset::kConfig);
+  config.replace(config.find(R"({".urdf": ["urdf/*/"]})"), 22, R"({".json": ["urdf/*/"]})");
+  small.write("home.scene_dataset_config.json", config);
+  const ComposedScene scene = composed(small, "inline");
+  EXPECT_THAT(scene.missing, testing::IsEmpty());
+  std::vector<double> widths;
+  for (const SourceInstance& instance : scene.scene.instances) {
+    double width = 0;
+    for (const auto& corner : placedVertices(scene.scene, instance)) {
+      width = std::max(width, corner[0]);
+    }
+    widths.push_back(width);
+  }
+  EXPECT_THAT(widths, ElementsAre(1, 2, 3, 4)) << "each has its own, whatever it is named";
+}
+
 TEST(SceneDataset, SaysWhatLacksAndWhereItWasLookedFor) {
   const ComposedScene scene = composed(SmallDataset());
   EXPECT_THAT(scene.missing,

@@ -90,7 +90,8 @@ struct SourceRobot {
   std::string name;
   /// Root first, parents before children; children in the order of the file's joints.
   std::vector<SourceLink> links;
-  /// Each mesh file once.
+  /// Each mesh file once, and each mesh that stands in the robot's own file. The first of the
+  /// `read.files` of each is the file that has it.
   std::vector<SourceAsset> meshes;
   /// Links that the file allows to touch, by index.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> may_touch;

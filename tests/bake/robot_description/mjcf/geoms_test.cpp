@@ -304,6 +304,8 @@ TEST(MjcfMeshes, MayStandInTheFileItself) {
   const auto mesh = meshInLink(whole, whole.links.back().collisions.at(0));
   expectBounds(mesh.bounds, {0, 0, -2}, {1, 3, 0});
   EXPECT_NEAR(signedVolume(mesh), 1, 1e-6);
+  ASSERT_EQ(whole.meshes.at(0).read.files.size(), 1U);
+  EXPECT_EQ(whole.meshes.at(0).read.files[0].name, "r.xml");
   // Without triangles it is the hull of the points.
   const auto points =
       mjcfRobot(folder, withGeoms("<geom type='mesh' mesh='m'/>",
