@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,11 @@ concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
   value.has_value();
 };
 
+template <class T>
+inline constexpr bool kIsOptional = false;
+template <class T>
+inline constexpr bool kIsOptional<std::optional<T>> = true;
+
 /// For transferFields: one list of fields per type serves both directions.
 template <class T, class Base>
 concept Is = std::is_same_v<std::remove_const_t<T>, Base>;
@@ -34,8 +40,8 @@ void transferFields(Archive& archive, Is<Error> auto& error) {
 }
 
 /// Writes values as bytes for another or a later process of this same program. A type that is
-/// neither plain nor a list needs a function template `transferFields(archive, value)` in
-/// galactic::bake, which calls the archive with its fields; the archive is a writer or a reader.
+/// neither plain nor a list nor optional needs a function template `transferFields(archive, value)`
+/// in galactic::bake, which calls the archive with its fields; the archive is a writer or a reader.
 class TransferWriter {
  public:
   explicit TransferWriter(const TransferSink& sink) : sink_(sink) {}
@@ -52,6 +58,9 @@ class TransferWriter {
       sink_(std::as_bytes(std::span(&value, 1)));
     } else if constexpr (requires { value.data(); }) {
       putList(value);
+    } else if constexpr (kIsOptional<T>) {
+      put(value.has_value());
+      if (value) put(*value);
     } else {
       transferFields(*this, value);
     }
@@ -105,6 +114,11 @@ class TransferReader {
       take(&value, sizeof(T));
     } else if constexpr (requires { value.data(); }) {
       getList(value);
+    } else if constexpr (kIsOptional<T>) {
+      bool is_there = false;
+      get(is_there);
+      value.reset();
+      if (is_there) get(value.emplace());
     } else {
       transferFields(*this, value);
     }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,10 @@ struct DescribedShape {
   DescribedGeometry geometry = DescribedGeometry::kBox;
   /// Box: sides. Cylinder: radius, length. Sphere: radius. Ellipsoid: half axes. Mesh: scale.
   std::array<double, 3> size{};
-  /// Mesh: the reference to its file; empty: one of RobotDescription::meshes.
+  /// Mesh: the reference to its file, unless it stands in the text.
   std::string mesh;
-  std::uint32_t own_mesh = 0;
+  /// Mesh that stands in the text: index into RobotDescription::meshes.
+  std::optional<std::uint32_t> own_mesh;
   Affine link_from_shape{};
   bool has_color = false;
   /// sRGB and alpha.

@@ -198,10 +198,10 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
                     .failure = {}};
 }
 
-GeometryBuilder::LoadedMesh& GeometryBuilder::loadOwn(const DescribedShape& shape) {
-  const auto [entry, is_new] = loaded_own_.try_emplace(shape.own_mesh);
+GeometryBuilder::LoadedMesh& GeometryBuilder::loadOwn(std::uint32_t own_mesh) {
+  const auto [entry, is_new] = loaded_own_.try_emplace(own_mesh);
   if (!is_new) return entry->second;
-  robot_.meshes.push_back(assetOf(own_meshes_[shape.own_mesh], nameRelativeTo(path_, path_)));
+  robot_.meshes.push_back(assetOf(own_meshes_[own_mesh], nameRelativeTo(path_, path_)));
   entry->second.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1);
   entry->second.size = sizeInFile(robot_.meshes.back());
   return entry->second;
@@ -242,9 +242,7 @@ const MeshResolution& GeometryBuilder::resolve(const std::string& reference,
 Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const DescribedShape& shape,
                                                                const std::string& place,
                                                                std::vector<LostShape>& lost) {
-  if (shape.mesh.empty() && shape.own_mesh < own_meshes_.size()) {
-    return checkedMesh(shape, place, loadOwn(shape));
-  }
+  if (shape.own_mesh) return checkedMesh(shape, place, loadOwn(*shape.own_mesh));
   const MeshResolution& resolution = resolve(shape.mesh, place);
   if (resolution.file.empty()) {
     robot_.missing.push_back(shape.mesh);
@@ -276,7 +274,7 @@ std::optional<std::uint32_t> GeometryBuilder::checkedMesh(const DescribedShape& 
     warn(place,
          fmt::format("mesh '{}' is {:.3g} m large: is its unit the meter? Correct the scale "
                      "of the <mesh>",
-                     shape.mesh.empty() ? own_meshes_[shape.own_mesh].name : shape.mesh, largest));
+                     shape.own_mesh ? own_meshes_[*shape.own_mesh].name : shape.mesh, largest));
   }
   return mesh.index;
 }

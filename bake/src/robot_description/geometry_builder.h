@@ -66,8 +66,8 @@ class GeometryBuilder {
   const MeshResolution& resolve(const std::string& reference, const std::string& place);
   /// `hides_looks`: nothing warns of looks that are missing.
   Result<LoadedMesh> loadFile(const std::filesystem::path& file, bool hides_looks);
-  /// The mesh of the shape, one that stands in the robot's file.
-  LoadedMesh& loadOwn(const DescribedShape& shape);
+  /// A mesh that stands in the robot's file; `own_mesh`: its index among these.
+  LoadedMesh& loadOwn(std::uint32_t own_mesh);
   /// The image that the shape is to be drawn with; empty, with a warning, where there is none.
   std::string findTexture(const DescribedShape& shape, const std::string& place);
   /// The place without the name of the robot's file, which every warning would repeat.

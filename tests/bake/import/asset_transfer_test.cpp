@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <optional>
 #include <vector>
 
 namespace galactic::test::asset_transfer_test {
@@ -131,6 +132,18 @@ TEST(AssetTransfer, RefusesEveryTruncationAndAnyFurtherByte) {
   }
   bytes.push_back({});
   EXPECT_FALSE(receiveAsset(bytes).has_value());
+}
+
+TEST(Transfer, TellsZeroFromNothing) {
+  const std::string bytes =
+      bake::bytesOf(std::optional<std::uint32_t>{0}, std::optional<std::uint32_t>{});
+  bake::TransferReader reader(std::as_bytes(std::span(bytes)));
+  std::optional<std::uint32_t> zero;
+  std::optional<std::uint32_t> nothing = 7;
+  reader(zero, nothing);
+  EXPECT_TRUE(reader.good() && reader.atEnd());
+  EXPECT_EQ(zero, 0U);
+  EXPECT_EQ(nothing, std::nullopt);
 }
 
 TEST(AssetTransfer, SurvivesAnyLengthField) {

@@ -98,7 +98,9 @@ void MjcfAssets::readMesh(const MjcfAttributes& mesh, RobotDescription& robot) {
   if (mesh.has("vertex")) {
     addPoints(mesh, shape, robot);
   } else if (mesh.has("file")) {
-    shape.mesh = inFolder(settings_.mesh_folder, mesh.text("file"));
+    const std::string file = mesh.text("file");
+    if (file.empty()) mesh.error("file", "the name of a file");
+    shape.mesh = inFolder(settings_.mesh_folder, file);
   } else {
     findings_.error(mesh.element().place,
                     fmt::format("<mesh> '{}' has neither 'file' nor 'vertex'; meshes that MuJoCo "

@@ -147,6 +147,11 @@ std::vector<Fault> geomFaults() {
        "the "
        "mesh as a file",
        ErrorCode::kUnsupported},
+      {"MeshOfNoFile",
+       withInside("<geom type='mesh' mesh='a'/>",
+                  "<asset><mesh name='a' file=''/>"
+                  "<mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/></asset>"),
+       "r.xml:1", "<mesh> has file=\"\", expected the name of a file"},
       {"MeshCorners",
        withInside("",
                   "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 4'/>"
