@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "galactic/bake/triangle_mesh.h"
 #include "import/affine.h"
 #include "support/text/nearest_name.h"
 
@@ -21,6 +22,10 @@ constexpr std::size_t kMostNumbers = std::numeric_limits<std::uint32_t>::max();
 
 /// A shape's color when nothing states one: then its material's counts.
 constexpr std::array<double, 4> kUnstatedColor{0.5, 0.5, 0.5, 1};
+
+/// Points are read in micrometers at the smallest, whatever scale is stated: they have to be
+/// floats.
+constexpr double kSmallestUnit = 1e-6;
 
 /// The name of an asset: stated, or that of its file.
 std::string nameOf(const MjcfAttributes& asset) {
@@ -96,7 +101,7 @@ void MjcfAssets::readMesh(const MjcfAttributes& mesh, RobotDescription& robot) {
   }
   const std::string name = nameOf(mesh);
   if (mesh.has("vertex")) {
-    addPoints(mesh, shape, robot);
+    addPoints(mesh, scale, shape, robot);
   } else if (mesh.has("file")) {
     const std::string file = mesh.text("file");
     if (file.empty()) mesh.error("file", "the name of a file");
@@ -114,14 +119,23 @@ void MjcfAssets::readMesh(const MjcfAttributes& mesh, RobotDescription& robot) {
   }
 }
 
-void MjcfAssets::addPoints(const MjcfAttributes& mesh, DescribedShape& shape,
-                           RobotDescription& robot) const {
+void MjcfAssets::addPoints(const MjcfAttributes& mesh, const std::array<double, 3>& scale,
+                           DescribedShape& shape, RobotDescription& robot) const {
   const auto points = mesh.numbers("vertex", 12, kMostNumbers);
   const auto corners = mesh.numbers("face", 3, kMostNumbers);
   if (!points) return;
   if (points->size() % 3 != 0) return mesh.error("vertex", "three numbers for each point");
   if (mesh.has("face") && (!corners || corners->size() % 3 != 0)) {
     return mesh.error("face", "three numbers of points for each triangle");
+  }
+  for (std::size_t n = 0; n < points->size(); ++n) {
+    const double scaled = (*points)[n] * std::max(std::abs(scale[n % 3]), kSmallestUnit);
+    if (std::abs(scaled) <= kMaxCoordinate) continue;
+    return findings_.error(
+        mesh.element().place,
+        fmt::format("<mesh> '{}' has a point at {:.6g} along an axis, at most {} m are possible; "
+                    "is the unit meters?",
+                    nameOf(mesh), scaled, kMaxCoordinate));
   }
   DescribedMesh own;
   own.name = nameOf(mesh);

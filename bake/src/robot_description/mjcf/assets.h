@@ -39,7 +39,9 @@ class MjcfAssets {
   void readMesh(const MjcfAttributes& mesh, RobotDescription& robot);
   void readTexture(const MjcfAttributes& texture);
   void readMaterial(const MjcfAttributes& material);
-  void addPoints(const MjcfAttributes& mesh, DescribedShape& shape, RobotDescription& robot) const;
+  /// `scale`: that of the mesh, by which its points may be far away.
+  void addPoints(const MjcfAttributes& mesh, const std::array<double, 3>& scale,
+                 DescribedShape& shape, RobotDescription& robot) const;
   [[nodiscard]] std::string inFolder(const std::string& folder, const std::string& file) const;
 
   const MjcfSettings& settings_;

@@ -152,6 +152,18 @@ std::vector<Fault> geomFaults() {
                   "<asset><mesh name='a' file=''/>"
                   "<mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1'/></asset>"),
        "r.xml:1", "<mesh> has file=\"\", expected the name of a file"},
+      {"MeshFarAway",
+       withInside("", "<asset>\n<mesh name='m' vertex='0 0 0 1e300 0 0 0 1 0 0 0 1'/></asset>"),
+       "r.xml:2",
+       "<mesh> 'm' has a point at 1e+300 along an axis, at most 800 m are possible; is the unit "
+       "meters?"},
+      {"MeshScaledFarAway",
+       withInside("",
+                  "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 -1 0 0 0 1' scale='1 900 1'/>"
+                  "</asset>"),
+       "r.xml:1",
+       "<mesh> 'm' has a point at -900 along an axis, at most 800 m are possible; is the unit "
+       "meters?"},
       {"MeshCorners",
        withInside("",
                   "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 4'/>"

@@ -313,6 +313,16 @@ TEST(MjcfMeshes, MayStandInTheFileItself) {
   EXPECT_NEAR(signedVolume(meshInLink(points, points.links.back().collisions.at(0))), 1, 1e-6);
 }
 
+TEST(MjcfMeshes, MayStandInTheFileInMillimeters) {
+  const ScratchFolder folder;
+  const auto robot = mjcfRobot(
+      folder, withGeoms("<geom type='mesh' mesh='m'/>",
+                        "<asset><mesh name='m' vertex='0 0 0  2000 0 0  0 1000 0  0 0 500' "
+                        "scale='.001 .001 .001'/></asset>"));
+  expectBounds(meshInLink(robot, robot.links.back().collisions.at(0)).bounds, {0, 0, -1},
+               {2, 0.5F, 0});
+}
+
 TEST(MjcfMeshes, StandForPrimitivesThatWouldBeFittedToThem) {
   const ScratchFolder folder;
   (void)folder.write("robots/box.obj", objFile(unevenBox()));
