@@ -205,16 +205,31 @@ std::optional<MeshResolution> MeshResolver::resolveAbove(Wanted& wanted) {
         return found;
     }
   }
+  return guessAbove(
+      wanted.rest,
+      fmt::format("no package '{}'; by its path from above the robot's file", wanted.package));
+}
+
+std::optional<MeshResolution> MeshResolver::guessAbove(const std::string& name, std::string how) {
+  std::optional<fs::path> far;
   for (const fs::path& ancestor : ancestors_) {
-    if (auto file = fileIn(ancestor, wanted.rest); file && isBelow(*file, ancestor)) {
-      return MeshResolution{
-          .file = *file,
-          .how = fmt::format("no package '{}'; by its path from above the robot's file",
-                             wanted.package),
-          .guessed = true};
+    auto file = fileIn(ancestor, name);
+    if (!file) continue;
+    if (isInReach(*file)) {
+      return MeshResolution{.file = *std::move(file), .how = std::move(how), .guessed = true};
     }
+    if (!far) far = std::move(file);
   }
-  return std::nullopt;
+  if (!far) return std::nullopt;
+  return outOfReach(*far);
+}
+
+MeshResolution MeshResolver::outOfReach(const fs::path& file) const {
+  MeshResolution resolution = notFound({file});
+  resolution.how +=
+      ", which is there, but outside the robot's folders and packages; give `package` NAME=DIR or "
+      "`allow-outside`";
+  return resolution;
 }
 
 MeshResolution MeshResolver::resolvePackage(const std::string& package, const std::string& rest) {
@@ -239,29 +254,19 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
 MeshResolution MeshResolver::resolveRelative(const std::string& reference) {
   const fs::path path(reference);
   if (path.empty()) return {.file = {}, .how = "a file name, which is empty", .guessed = false};
-  const auto out_of_reach = [this](const fs::path& file) {
-    MeshResolution resolution = notFound({file});
-    resolution.how +=
-        ", which is there, but outside the robot's folders and packages; give `package` "
-        "NAME=DIR or `allow-outside`";
-    return resolution;
-  };
   if (path.is_absolute()) {
     const auto file = fileIn("/", reference);
     if (!file) return notFound({path.lexically_normal()});
-    if (!isInReach(*file)) return out_of_reach(*file);
+    if (!isInReach(*file)) return outOfReach(*file);
     return {.file = *file, .how = "absolute path"};
   }
   if (auto file = fileIn(ancestors_.front(), reference)) {
-    if (!isInReach(*file)) return out_of_reach(*file);
+    if (!isInReach(*file)) return outOfReach(*file);
     return {.file = *file, .how = "relative to the robot's file"};
   }
   if (*path.begin() != "..") {
-    for (const fs::path& ancestor : ancestors_) {
-      if (auto file = fileIn(ancestor, reference)) {
-        return {
-            .file = *file, .how = "relative to a folder above the robot's file", .guessed = true};
-      }
+    if (auto found = guessAbove(reference, "relative to a folder above the robot's file")) {
+      return *found;
     }
   }
   return notFound({(ancestors_.front() / reference).lexically_normal()});

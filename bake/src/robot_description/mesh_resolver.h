@@ -56,8 +56,13 @@ class MeshResolver {
   /// The file in the folders above the robot's file, and beside these.
   [[nodiscard]] std::optional<MeshResolution> resolveAbove(Wanted& wanted);
   [[nodiscard]] MeshResolution resolveRelative(const std::string& reference);
+  /// The nearest file of that name in the folders above the robot's file that is in reach, or else
+  /// that there is one out of reach; nothing where there is none. `how`: by which rule.
+  [[nodiscard]] std::optional<MeshResolution> guessAbove(const std::string& name, std::string how);
   /// A resolution without file that lists where it was looked for.
   [[nodiscard]] MeshResolution notFound(const std::vector<std::filesystem::path>& tried) const;
+  /// A resolution without file that says how to allow this one.
+  [[nodiscard]] MeshResolution outOfReach(const std::filesystem::path& file) const;
   /// Folders named or described as `package` in the search roots.
   [[nodiscard]] const std::vector<std::filesystem::path>& foldersOf(const std::string& package);
 

@@ -145,6 +145,32 @@ TEST_F(MeshReferences, LeadIntoPackagesAndTheUrdfsFoldersOnly) {
   EXPECT_EQ(resolve(relative).file, secret);
 }
 
+TEST_F(MeshReferences, AreNotGuessedOutsideOfPackagesAndTheUrdfsFolders) {
+  const fs::path far = put("secret/m.stl");
+  const fs::path near = put("ws/src/pkg_description/meshes/m.stl");
+  for (const char* reference :
+       {"secret/m.stl", "x/../../secret/m.stl", "package://no_such_package/secret/m.stl"}) {
+    SCOPED_TRACE(reference);
+    const MeshResolution refused = resolve(reference);
+    EXPECT_TRUE(refused.file.empty()) << refused.file;
+    EXPECT_EQ(refused.how,
+              "../../../../secret/m.stl (from the robot's folder), which is there, but outside the "
+              "robot's folders and packages; give `package` NAME=DIR or `allow-outside`");
+  }
+  EXPECT_EQ(resolve("meshes/m.stl").file, near);
+  EXPECT_EQ(resolve("package://no_such_package/meshes/m.stl").file, near);
+  options_.packages["secrets"] = far.parent_path();
+  EXPECT_EQ(resolve("secret/m.stl").file, far);
+  options_.packages.clear();
+  options_.allow_outside = true;
+  EXPECT_EQ(resolve("secret/m.stl").file, far);
+  EXPECT_EQ(resolve("package://no_such_package/secret/m.stl").file, far);
+  options_.allow_outside = false;
+  // A package is within reach of all that lies in it.
+  (void)folder_.write("package.xml", "<package><name>all</name></package>");
+  EXPECT_EQ(resolve("secret/m.stl").file, far);
+}
+
 TEST_F(MeshReferences, MayHaveUriEscapes) {
   const fs::path mesh = put("ws/src/pkg_description/meshes/my mesh.stl");
   EXPECT_EQ(resolve("package://pkg_description/meshes/my%20mesh.stl").file, mesh);

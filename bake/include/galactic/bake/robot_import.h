@@ -26,8 +26,8 @@ struct RobotImportOptions {
   std::vector<std::filesystem::path> search_roots;
   /// Whether a link that lost all its geometry causes a warning instead of an error.
   bool allow_missing = false;
-  /// Whether absolute paths, and relative paths that lead upwards, may lead anywhere. Otherwise
-  /// they must lead into packages, or below the folder above the robot file's folder.
+  /// Whether meshes and included files may lie anywhere. Otherwise they must lie in packages, or
+  /// below the folder above the robot file's folder.
   bool allow_outside = false;
   /// Up axis of the file: kZ, or kY for furniture made for simulators that are Y up.
   UpAxis up = UpAxis::kZ;
@@ -48,9 +48,11 @@ struct RobotImportOptions {
 /// Meshes: package://, model://, file://, absolute paths and paths relative to the robot file (for
 /// an MJCF, in its `meshdir`). A package is searched for in options.packages, then in
 /// options.search_roots, then from the file's folder upwards. As a last resort, the path inside the
-/// package is tried from the file's folder upwards, with a warning. SourceRobot::resolutions names
-/// where each was found. Each file is loaded once; in its SourceAsset, names of files and textures
-/// are relative to the folder of the robot's file.
+/// package, or a relative path without "..", is tried from the file's folder upwards, with a
+/// warning. However it is found, a mesh must lie in a package, in one of options.search_roots, or
+/// below the folder above the file's folder, unless options.allow_outside: otherwise it counts as
+/// missing. SourceRobot::resolutions names where each was found. Each file is loaded once; in its
+/// SourceAsset, names of files and textures are relative to the folder of the robot's file.
 ///
 /// Missing meshes are always reported. A mesh that is not found or does not load causes a warning
 /// if its link keeps other geometry, and an error if the link loses all of it (see allow_missing).
