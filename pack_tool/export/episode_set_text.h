@@ -12,8 +12,9 @@ enum class FileUp { kX, kY, kZ, kMinusX, kMinusY, kMinusZ };
 /// spawns in the order of the placements, and episodes. Poses turn from the frame of the objects'
 /// packs (Y up) to that of their mesh files, whose up axis is `up`; quaternions stand as w, x, y,
 /// z. Every number reads back exactly: what was imported with the same `up`, exported and imported
-/// again is the same. The heights of the starts, the robot's name and the names of the start joints
-/// have no place in the format. A scene has one render asset of its name, at the origin.
+/// again is the same. Three keys are galactic's own: the robot's name ("robot"), the names of the
+/// start joints ("startJoints"), and, where it is not 0, the height of a start
+/// ("agentStartHeight"). A scene has one render asset of its name, at the origin.
 [[nodiscard]] std::string episodeSetText(const EpisodeSet& set, FileUp up);
 
 }  // namespace galactic::pack_tool

@@ -1,4 +1,4 @@
-// Forward kinematics, as runtime/src/kinematics.cpp has it.
+// Forward kinematics, as runtime/src/pack/kinematics.cpp has it.
 import { Quaternion, Vector3 } from "three";
 
 export class Pose {
