@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "command.h"
+#include "galactic/bake/habitat_names.h"
 #include "galactic/bake/option_field.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/error.h"

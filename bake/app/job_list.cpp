@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "command.h"
+#include "galactic/bake/habitat_names.h"
 #include "support/files/output_files.h"
 #include "support/try.h"
 
@@ -62,18 +63,17 @@ bool makesOnePack(const Job& job) {
 
 /// Explains what a JSON file given as a mesh is, and what to give instead.
 std::string whatJsonIs(std::string_view file) {
-  constexpr std::string_view kSceneSuffix = ".scene_instance.json";
   if (file.ends_with(kSceneSuffix)) {
     return fmt::format("is a scene of a dataset; give the dataset's NAME{}, with `scenes` {}",
-                       kDatasetSuffix, file.substr(0, file.size() - kSceneSuffix.size()));
+                       kDatasetSuffix, habitatName(file));
   }
-  if (file.ends_with(".stage_config.json")) {
+  if (file.ends_with(kStageSuffix)) {
     return fmt::format(
         "is about a stage of a dataset; give the mesh that it names as its render_asset, with the "
         "axis that it gives as `up`, or the dataset's NAME{} for scenes with their furniture",
         kDatasetSuffix);
   }
-  if (file.ends_with(".object_config.json")) {
+  if (file.ends_with(kObjectSuffix)) {
     return fmt::format(
         "is about an object of a dataset; give the mesh that it names as its render_asset, with "
         "`as` object and the axis that it gives as `up`, or the dataset's NAME{} for all objects "

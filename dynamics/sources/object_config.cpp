@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "dynamics/sources/body_ranges.h"
+#include "galactic/bake/habitat_names.h"
 #include "json_reader.h"
 #include "support/try.h"
 
@@ -13,8 +14,6 @@ namespace galactic::dynamics {
 namespace {
 
 using bake::Json;
-
-constexpr std::string_view kSuffix = ".object_config.json";
 
 bool isFile(const std::filesystem::path& path) {
   std::error_code none;
@@ -58,7 +57,7 @@ void readCollisionAsset(const Json& json, ObjectConfig& config) {
 std::optional<std::filesystem::path> findObjectConfig(const std::filesystem::path& mesh,
                                                       std::string_view name) {
   constexpr int kFolders = 4;
-  const std::string file = std::string(name) + std::string(kSuffix);
+  const std::string file = std::string(name) + std::string(bake::kObjectSuffix);
   std::filesystem::path folder = mesh.parent_path();
   for (int n = 0; n < kFolders; ++n) {
     for (const std::string_view below :
@@ -75,7 +74,7 @@ std::optional<std::filesystem::path> findObjectConfig(const std::filesystem::pat
 Result<ObjectConfig> readObjectConfig(const std::filesystem::path& file) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20;
   ASSIGN_OR_RETURN(const Json json, bake::readJsonFile(file, {.what = "an object configuration",
-                                                              .suffix = kSuffix,
+                                                              .suffix = bake::kObjectSuffix,
                                                               .max_bytes = kMostBytes}));
   if (!json.is_object()) {
     return fail(ErrorCode::kInvalidInput, file.string(),

@@ -11,6 +11,7 @@
 #include "dataset/config/dataset_index.h"
 #include "dataset/dataset_library.h"
 #include "dataset/scene_files.h"
+#include "galactic/bake/habitat_names.h"
 #include "json/json_reader.h"
 #include "recipe/world_recipe.h"
 #include "support/files/output_files.h"
@@ -122,7 +123,7 @@ Result<std::optional<UpAxis>> upOf(const SceneFile& scan) {
   if (scan.attributes.empty()) return scan.up;
   ASSIGN_OR_RETURN(const Json json,
                    readJsonFile(scan.attributes, {.what = "a stage's attributes",
-                                                  .suffix = ".stage_config.json",
+                                                  .suffix = kStageSuffix,
                                                   .max_bytes = std::size_t{1} << 24U}));
   const auto up = json.is_object() ? json.find("up") : json.end();
   if (!json.is_object() || up == json.end()) return scan.up;

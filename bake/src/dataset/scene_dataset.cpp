@@ -15,6 +15,7 @@
 #include "dataset/scene_composer.h"
 #include "dataset/scene_layout.h"
 #include "dataset/unique_names.h"
+#include "galactic/bake/habitat_names.h"
 #include "galactic/bake/read_files.h"
 #include "robot_description/named_files.h"
 #include "support/text/nearest_name.h"
@@ -47,16 +48,29 @@ std::vector<std::string> partsOf(const DatasetTemplate& entry) {
   return parts;
 }
 
+/// Whether the list has the scan of `entry` with plain textures, too, which can be read.
+bool isCopyOfAnother(const DatasetTemplate& entry, const TemplateList& list) {
+  std::string_view handle = entry.handle;
+  if (!handle.ends_with(kBasisSuffix)) return false;
+  handle.remove_suffix(kBasisSuffix.size());
+  return list.all().contains(std::string(handle) + ".glb");
+}
+
 /// Names for the templates of a list, which become files: packs find their textures beside the
-/// folder that they lie in.
+/// folder that they lie in. Each scan once.
 std::map<std::string, const DatasetTemplate*, std::less<>> namesIn(const TemplateList& list) {
+  std::vector<const DatasetTemplate*> entries;
   std::vector<std::vector<std::string>> paths;
+  entries.reserve(list.all().size());
   paths.reserve(list.all().size());
-  for (const auto& [handle, entry] : list.all()) paths.push_back(partsOf(entry));
+  for (const auto& [handle, entry] : list.all()) {
+    if (isCopyOfAnother(entry, list)) continue;
+    entries.push_back(&entry);
+    paths.push_back(partsOf(entry));
+  }
   std::vector<std::string> unique = uniqueNames(paths);
   std::map<std::string, const DatasetTemplate*, std::less<>> names;
-  std::size_t next = 0;
-  for (const auto& [handle, entry] : list.all()) names.emplace(std::move(unique[next++]), &entry);
+  for (std::size_t n = 0; n < entries.size(); ++n) names.emplace(std::move(unique[n]), entries[n]);
   return names;
 }
 

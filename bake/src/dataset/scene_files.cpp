@@ -10,6 +10,7 @@
 #include "common/lower_case.h"
 #include "dataset/config/dataset_paths.h"
 #include "dataset/unique_names.h"
+#include "galactic/bake/habitat_names.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 /// Deeper folders are not searched: published scans are three deep at most.
 constexpr std::size_t kDeepest = 6;
 /// By falling preference among files of one scene.
-constexpr std::array<std::string_view, 4> kEndings{".glb", ".basis.glb", ".ply", ".obj"};
+constexpr std::array<std::string_view, 4> kEndings{".glb", kBasisSuffix, ".ply", ".obj"};
 /// Parts of the names of files that are no surface to stand on.
 constexpr std::array<std::string_view, 4> kNoSurface{".semantic.", "_semantic.", ".navmesh",
                                                      "_navmesh."};
@@ -40,8 +41,8 @@ std::optional<Candidate> candidateOf(const fs::path& path) {
   // The longest ending first.
   for (const std::size_t ending : {1U, 0U, 2U, 3U}) {
     if (!name.ends_with(kEndings[ending]) || name.size() == kEndings[ending].size()) continue;
-    const std::string whole = path.string();
-    return Candidate{path, whole.substr(0, whole.size() - kEndings[ending].size()), ending};
+    const fs::path scene = path.parent_path() / habitatName(path.filename().string());
+    return Candidate{path, scene.string(), ending};
   }
   return std::nullopt;
 }
@@ -105,7 +106,7 @@ Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
     SceneFile& file = files.emplace_back();
     file.path = candidate.path;
     if (candidate.preference <= 1) file.up = UpAxis::kZ;
-    const fs::path attributes = candidate.scene + ".stage_config.json";
+    const fs::path attributes = candidate.scene + std::string(kStageSuffix);
     std::error_code ignored;
     if (fs::is_regular_file(attributes, ignored)) file.attributes = attributes;
   }

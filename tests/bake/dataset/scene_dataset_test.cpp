@@ -396,18 +396,38 @@ TEST(SceneDataset, OfStagesAloneHasThemAsScenes) {
   static_cast<void>(folder.write("train/1/xyz.obj", objFile(unevenBox())));
   const auto dataset = SceneDataset::read(config);
   ASSERT_TRUE(dataset) << textOf(dataset.error());
-  ASSERT_THAT(dataset->scenes(), ElementsAre("abc.basis", "xyz"));
+  ASSERT_THAT(dataset->scenes(), ElementsAre("abc", "xyz")) << "as of a folder and in episodes";
   MeshLibrary meshes(bake::datasetMeshOptions());
-  const auto scan = dataset->compose("abc.basis", meshes);
+  const auto scan = dataset->compose("abc", meshes);
   ASSERT_TRUE(scan) << textOf(scan.error());
   // As Habitat does, a bare GLB is taken for Z up.
-  EXPECT_LT(errorOf(scan->scene, "abc.basis", changedCorners([](const auto& p) {
+  EXPECT_LT(errorOf(scan->scene, "abc", changedCorners([](const auto& p) {
                       return std::array{p[0], p[2], -p[1]};
                     })),
             kTolerance);
   const auto other = dataset->compose("xyz", meshes);
   ASSERT_TRUE(other) << textOf(other.error());
   EXPECT_LT(errorOf(other->scene, "xyz", boxCorners()), kTolerance);
+}
+
+TEST(SceneDataset, HasEachScanOnce) {
+  const ScratchFolder folder;
+  const auto config =
+      folder.write("scans.scene_dataset_config.json", R"({"stages": {"paths": {".glb": ["*/"]}}})");
+  for (const char* file : {"0/abc.basis.glb", "0/abc.glb", "1/xyz.basis.glb", "2/v1.5.glb"}) {
+    static_cast<void>(folder.write(file, glbFile(unevenBox())));
+  }
+  static_cast<void>(folder.write("1/xyz.stage_config.json", R"({"up": [0, 1, 0]})"));
+  const auto dataset = SceneDataset::read(config);
+  ASSERT_TRUE(dataset) << textOf(dataset.error());
+  EXPECT_THAT(dataset->scenes(), ElementsAre("abc", "v1.5", "xyz"));
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  const auto plain = dataset->compose("abc", meshes);
+  ASSERT_TRUE(plain) << textOf(plain.error());
+  EXPECT_EQ(plain->scene.read.files.front().name, "0/abc.glb");
+  const auto upright = dataset->compose("xyz", meshes);
+  ASSERT_TRUE(upright) << textOf(upright.error());
+  EXPECT_LT(errorOf(upright->scene, "xyz", boxCorners()), kTolerance) << "its attributes count";
 }
 
 TEST(SceneDataset, TurnsAPublishedStageThatLiesOnItsSide) {

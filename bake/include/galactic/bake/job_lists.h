@@ -15,9 +15,6 @@
 
 namespace galactic::bake {
 
-/// The suffix of the file name of a scene dataset's configuration.
-inline constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
-
 /// What to do with a scene of a dataset if some of its files are missing. A scene without its stage
 /// is never baked.
 enum class MissingPolicy {

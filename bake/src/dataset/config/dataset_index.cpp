@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dataset/config/dataset_paths.h"
+#include "galactic/bake/habitat_names.h"
 #include "import/source_files.h"
 #include "support/try.h"
 
@@ -15,23 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr JsonFileKind kDatasetFile{.what = "a scene dataset",
-                                    .suffix = ".scene_dataset_config.json",
-                                    .max_bytes = std::size_t{64} << 20U};
+constexpr JsonFileKind kDatasetFile{
+    .what = "a scene dataset", .suffix = kDatasetSuffix, .max_bytes = std::size_t{64} << 20U};
 
 constexpr std::array<TemplateKindNames, kTemplateKinds> kNames{{
-    {"stages", ".stage_config.json", "stage"},
-    {"objects", ".object_config.json", "object"},
-    {"articulated_objects", ".ao_config.json", "articulated object"},
-    {"scene_instances", ".scene_instance.json", "scene"},
+    {"stages", kStageSuffix, "stage"},
+    {"objects", kObjectSuffix, "object"},
+    {"articulated_objects", kArticulatedSuffix, "articulated object"},
+    {"scene_instances", kSceneSuffix, "scene"},
 }};
-
-/// "chair.object_config.json" and "chair.glb" as "chair".
-std::string nameOfFile(const fs::path& file, std::string_view suffix) {
-  const std::string name = file.filename().string();
-  if (name.ends_with(suffix)) return name.substr(0, name.size() - suffix.size());
-  return file.stem().string();
-}
 
 class IndexReader {
  public:
@@ -62,16 +55,19 @@ bool IndexReader::wantsObject(const JsonNode& node) {
 void IndexReader::addFile(TemplateKind kind, const fs::path& file) {
   const std::string_view suffix = namesOf(kind).suffix;
   DatasetTemplate entry;
-  entry.name = nameOfFile(file, suffix);
+  entry.name = habitatName(file.string(), file.extension().string());
   entry.folder = file.parent_path();
   if (file.filename().string().ends_with(suffix)) {
     entry.config = file;
   } else {
     entry.asset = file;
-    // As in Habitat: attributes beside a mesh or URDF belong to it.
-    const fs::path beside = entry.folder / (entry.name + std::string(suffix));
-    std::error_code ignored;
-    if (fs::is_regular_file(beside, ignored)) entry.config = beside;
+    // As in Habitat: attributes beside a mesh or URDF belong to it. Of NAME.basis.glb they may have
+    // either name.
+    for (const std::string& name : {file.stem().string(), entry.name}) {
+      const fs::path beside = entry.folder / (name + std::string(suffix));
+      std::error_code ignored;
+      if (entry.config.empty() && fs::is_regular_file(beside, ignored)) entry.config = beside;
+    }
   }
   entry.handle = nameRelativeTo(index_.config, entry.config.empty() ? entry.asset : entry.config);
   block(kind).templates.add(entry);
@@ -155,7 +151,7 @@ void IndexReader::readInline(TemplateKind kind, const JsonNode& node) {
     entry = *found.found;
   }
   entry.handle = handle_name;
-  entry.name = nameOfFile(handle_name, namesOf(kind).suffix);
+  entry.name = habitatName(handle_name);
   entry.layers.push_back(std::move(layer));
   templates.replace(std::move(entry));
 }

@@ -1,15 +1,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "episodes/import/episode_file.h"
 #include "episodes/import/episode_readers.h"
 #include "episodes/import/object_frame.h"
 #include "fit/rotation.h"
+#include "galactic/bake/habitat_names.h"
 #include "json/json_reader.h"
 #include "support/try.h"
 
@@ -43,6 +50,24 @@ class NameList {
   std::map<std::string, std::uint32_t> numbers_;
   std::vector<std::string> names_;
 };
+
+/// Which of several objects is meant by an instance handle: "mug_:0002" is the third of "mug".
+struct HabitatInstance {
+  std::string object;
+  std::size_t number = 0;
+};
+
+/// Nothing where `handle` is none.
+std::optional<HabitatInstance> habitatInstance(std::string_view handle) {
+  constexpr std::string_view kMark = "_:";
+  const std::size_t mark = handle.rfind(kMark);
+  if (mark == std::string_view::npos) return std::nullopt;
+  const std::string_view digits = handle.substr(mark + kMark.size());
+  std::uint32_t number = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (problem != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return HabitatInstance{habitatName(handle.substr(0, mark)), number};
+}
 
 /// How often something was met that a pack cannot hold.
 struct Losses {
