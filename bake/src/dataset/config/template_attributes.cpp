@@ -113,8 +113,7 @@ Result<void> checkFrame(const TemplateAttributes& attributes, const std::string&
                           fmt::join(attributes.up, ", "), fmt::join(attributes.front, ", ")));
 }
 
-}  // namespace
-
+/// The document that is the template's own file, which it has to have.
 Result<Json> readTemplateFile(const DatasetTemplate& entry, TemplateKind kind) {
   const TemplateKindNames& names = namesOf(kind);
   return readJsonFile(entry.config, {.what = names.noun == "articulated object"
@@ -123,6 +122,8 @@ Result<Json> readTemplateFile(const DatasetTemplate& entry, TemplateKind kind) {
                                      .suffix = names.suffix,
                                      .max_bytes = kMaxFileBytes});
 }
+
+}  // namespace
 
 Result<std::vector<AttributeLayer>> layersOf(const DatasetTemplate& entry,
                                              const DatasetBlock& block, TemplateKind kind) {

@@ -35,9 +35,6 @@ struct TemplateAttributes {
                                                         const DatasetBlock& block,
                                                         TemplateKind kind);
 
-/// The document of `entry`: see readAttributes; null where it has no file.
-[[nodiscard]] Result<Json> readTemplateFile(const DatasetTemplate& entry, TemplateKind kind);
-
 /// Everything stated about `entry` in the order in which it applies: defaults, file, layers.
 [[nodiscard]] Result<std::vector<AttributeLayer>> layersOf(const DatasetTemplate& entry,
                                                            const DatasetBlock& block,
