@@ -1,6 +1,7 @@
 #include "episodes/episode_draft.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -105,7 +106,10 @@ class Draft {
     std::size_t tries = 0;
     for (std::size_t n = 0; n < kDistanceTries && tries < kObjectTries; ++n) {
       const SupportPlace& place = drawPlace(&ProvenPair::goal);
-      if (!mayHoldGoal(place)) continue;
+      if (const auto fault = goalFault(place)) {
+        rejections_.add(*fault);
+        continue;
+      }
       ++tries;
       if (tryGoal(place)) return true;
     }
@@ -120,14 +124,27 @@ class Draft {
     return true;
   }
 
-  /// The places at which the goal may be, by distance.
-  [[nodiscard]] std::vector<std::uint32_t> goalPlaces() {
+  /// Where the goal may be, as far as surface and distance tell.
+  struct GoalPlaces {
+    /// Indices into SupportPlaces::places().
     std::vector<std::uint32_t> found;
+    /// Why the other places are none: the fault that is looked for last.
+    EpisodeRejection fault = EpisodeRejection::kOtherPart;
+  };
+  [[nodiscard]] GoalPlaces goalPlaces() const {
+    constexpr std::array kOrder{EpisodeRejection::kOtherPart, EpisodeRejection::kSameSupport,
+                                EpisodeRejection::kDistance};
+    GoalPlaces goals;
     const auto& places = home_.supports.places();
     for (std::uint32_t n = 0; n < places.size(); ++n) {
-      if (mayHoldGoal(places[n])) found.push_back(n);
+      const auto fault = goalFault(places[n]);
+      if (!fault) {
+        goals.found.push_back(n);
+      } else if (std::ranges::find(kOrder, *fault) > std::ranges::find(kOrder, goals.fault)) {
+        goals.fault = *fault;
+      }
     }
-    return found;
+    return goals;
   }
 
   /// Places the other objects clear of each other, of target and goal, and of the positions in
@@ -257,19 +274,19 @@ class Draft {
                 .yaw = 2 * std::atan2(turn.y, turn.w)};
   }
 
-  /// Whether the target could be at the right distance, somewhere in the place's cell.
-  bool mayHoldGoal(const SupportPlace& place) {
-    if (place.part != target_part_) return reject(EpisodeRejection::kOtherPart);
+  /// Why the goal cannot be anywhere in the place's cell; nothing where it could.
+  [[nodiscard]] std::optional<EpisodeRejection> goalFault(const SupportPlace& place) const {
+    if (place.part != target_part_) return EpisodeRejection::kOtherPart;
     if (home_.options.goal_on_other_support && place.surface_id == target_surface_) {
-      return reject(EpisodeRejection::kSameSupport);
+      return EpisodeRejection::kSameSupport;
     }
     const float off = kAside + home_.scene.grids().front().spacing();
     const Vec3 way =
         Vec3{place.x, place.surface + wanted_.stable->height, place.z} - target_.pose.translation;
     const float distance = std::sqrt(dot(way, way));
     const DistanceRange& range = home_.target_to_goal;
-    if (isWithin(distance, {range.least - off, range.most + off})) return true;
-    return reject(EpisodeRejection::kDistance);
+    if (isWithin(distance, {range.least - off, range.most + off})) return std::nullopt;
+    return EpisodeRejection::kDistance;
   }
 
   bool isGoal(const PlacedObject& object) {
@@ -332,28 +349,30 @@ class Draft {
 
 }  // namespace
 
-std::vector<ProvenPair> findProvenPairs(const DraftHome& home, RejectionCounts& rejections) {
-  std::vector<ProvenPair> pairs;
+PairSearch findProvenPairs(const DraftHome& home) {
+  PairSearch search;
   const auto count = static_cast<std::uint32_t>(home.supports.places().size());
   // The stream is no episode's.
   Random random(~home.options.seed);
   const DraftEase anywhere;
   std::size_t tries = 0;
-  while (tries < kSurveyTries && pairs.size() < kEnoughPairs) {
+  while (tries < kSurveyTries && search.pairs.size() < kEnoughPairs) {
     ++tries;
-    Draft draft(home, anywhere, random, rejections);
+    Draft draft(home, anywhere, random, search.rejections);
     draft.chooseTarget();
     const std::uint32_t target = random.below(count);
     if (!draft.tryTarget(home.supports.places()[target])) continue;
-    const std::vector<std::uint32_t> goals = draft.goalPlaces();
+    ++search.reached_targets;
+    const auto& [goals, fault] = draft.goalPlaces();
+    if (goals.empty()) search.rejections.add(fault);
     for (std::size_t n = 0; n < kGoalTries && !goals.empty(); ++n, ++tries) {
       const std::uint32_t goal = goals[random.below(static_cast<std::uint32_t>(goals.size()))];
       if (!draft.tryGoal(home.supports.places()[goal])) continue;
-      pairs.push_back({target, goal});
+      search.pairs.push_back({target, goal});
       break;
     }
   }
-  return pairs;
+  return search;
 }
 
 DraftEnd draftEpisode(const DraftHome& home, const DraftEase& ease, Random& random,

@@ -61,11 +61,20 @@ struct ProvenPair {
   std::uint32_t goal = 0;
 };
 
+/// What a search for proven pairs found.
+struct PairSearch {
+  /// Empty where the scene is all but hopeless.
+  std::vector<ProvenPair> pairs;
+  /// Targets that stood at their place and were reached.
+  std::size_t reached_targets = 0;
+  /// What was drawn and not taken, one reason for each try: of a target for which no place is a
+  /// goal, why the place that came nearest to it is none.
+  RejectionCounts rejections;
+};
+
 /// Looks for proven pairs in kSurveyTries tries, by going from places that held an object to all
-/// those at the right distance. None where the scene is all but hopeless. Adds up in `rejections`
-/// what was drawn and not taken. Depends on the home only.
-[[nodiscard]] std::vector<ProvenPair> findProvenPairs(const DraftHome& home,
-                                                      RejectionCounts& rejections);
+/// those at the right distance. Depends on the home only.
+[[nodiscard]] PairSearch findProvenPairs(const DraftHome& home);
 
 /// What a draft may make use of, and do without, after others have failed.
 struct DraftEase {

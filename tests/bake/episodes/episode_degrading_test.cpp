@@ -265,8 +265,7 @@ TEST(ProvenPlaces, LetMoreDraftsSucceed) {
       bake::PreparedScene::prepare(context, generation->scenes().front().scene, {});
   ASSERT_TRUE(prepared.has_value()) << prepared.error().message;
   const bake::DraftHome home = (*prepared)->draftHome();
-  bake::RejectionCounts survey;
-  const auto pairs = bake::findProvenPairs(home, survey);
+  const auto pairs = bake::findProvenPairs(home).pairs;
   EXPECT_FALSE(pairs.empty());
   const auto& places = home.supports.places();
   for (const bake::ProvenPair& pair : pairs) {
@@ -291,6 +290,31 @@ TEST(ProvenPlaces, LetMoreDraftsSucceed) {
   RecordProperty("anywhere", anywhere);
   EXPECT_LT(anywhere, kDrafts * 8 / 10);
   EXPECT_GT(near_proven, kDrafts * 9 / 10);
+}
+
+TEST(ProvenPlaces, CountOneReasonForEachTry) {
+  const MadeWorld world(tablesRoom(), stickRobot());
+  const EpisodeGeneratorOptions options = optionsFor(1, 1);
+  const auto packs = world.packs();
+  const auto generation = bake::GenerationWorld::open(packs);
+  ASSERT_TRUE(generation.has_value()) << generation.error().message;
+  const bake::ArmReach reach(generation->robot());
+  const bake::GenerationContext context{*generation, reach, {}, options};
+  const auto prepared =
+      bake::PreparedScene::prepare(context, generation->scenes().front().scene, {});
+  ASSERT_TRUE(prepared.has_value()) << prepared.error().message;
+  bake::DraftHome home = (*prepared)->draftHome();
+  // No place is that far from any other.
+  home.target_to_goal = {50, 60};
+  const bake::PairSearch search = bake::findProvenPairs(home);
+  EXPECT_THAT(search.pairs, IsEmpty());
+  EXPECT_GT(search.reached_targets, 0U);
+  EXPECT_EQ(search.rejections[bake::EpisodeRejection::kDistance], search.reached_targets);
+  std::uint64_t drawn = 0;
+  for (std::size_t reason = 0; reason < bake::kRejectionCount; ++reason) {
+    drawn += search.rejections[static_cast<bake::EpisodeRejection>(reason)];
+  }
+  EXPECT_EQ(drawn, bake::kSurveyTries);
 }
 
 }  // namespace

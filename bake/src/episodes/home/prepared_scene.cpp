@@ -32,9 +32,9 @@ bool covers(const Bounds& mesh, const Bounds& grid) {
          mesh.max.x >= grid.max.x - kGridMargin && mesh.max.z >= grid.max.z - kGridMargin;
 }
 
-/// What to do where no goal was found. Of each target that stood and was reached, some place was
-/// too near for its goal or on its own surface.
-std::string adviceFor(const RejectionCounts& rejections, float flatness) {
+/// What to do where no goal was found.
+std::string adviceFor(const PairSearch& search, float flatness) {
+  const RejectionCounts& rejections = search.rejections;
   // On scans nearly every try fails where surfaces have to be flatter.
   constexpr double kNearlyAll = 0.98;
   const std::uint64_t bumpy =
@@ -45,10 +45,7 @@ std::string adviceFor(const RejectionCounts& rejections, float flatness) {
         "{}, or ask for other heights or smaller objects",
         flatness, kScanFlatness);
   }
-  const bool reached = rejections[EpisodeRejection::kDistance] > 0 ||
-                       rejections[EpisodeRejection::kSameSupport] > 0 ||
-                       rejections[EpisodeRejection::kOtherPart] > 0;
-  if (reached || rejections[EpisodeRejection::kNotReached] == 0) {
+  if (search.reached_targets > 0 || rejections[EpisodeRejection::kNotReached] == 0) {
     return "ask for other distances, other heights or smaller objects";
   }
   return "the hand reached none of the targets that stood: see that the grasp point of the robot's "
@@ -138,21 +135,20 @@ void PreparedScene::chooseWay() {
 void PreparedScene::survey() {
   // Goals nearer than that to their targets are hardly a task.
   constexpr float kLeastWay = 0.2F;
-  RejectionCounts rejections;
-  proven_ = findProvenPairs(draftHome(), rejections);
-  while (proven_.empty() && context_.options.shorten_way &&
+  PairSearch search = findProvenPairs(draftHome());
+  while (search.pairs.empty() && context_.options.shorten_way &&
          target_to_goal_.least / 2 >= kLeastWay) {
     target_to_goal_.least /= 2;
-    rejections = {};
-    proven_ = findProvenPairs(draftHome(), rejections);
+    search = findProvenPairs(draftHome());
   }
+  proven_ = std::move(search.pairs);
   if (!proven_.empty()) return;
   unusable_ = fmt::format(
       "no places were found for a target and its goal {} away{} in {} tries on its {} support "
       "places, which are at most {:.2f} m apart (drawn and not taken: {}); {}",
       textOf(target_to_goal_), context_.options.goal_on_other_support ? " on another surface" : "",
-      kSurveyTries, supports_.places().size(), widestWay(), textOf(rejections),
-      adviceFor(rejections, context_.options.flatness));
+      kSurveyTries, supports_.places().size(), widestWay(), textOf(search.rejections),
+      adviceFor(search, context_.options.flatness));
 }
 
 Result<void> PreparedScene::useMesh() {

@@ -14,7 +14,7 @@ inline constexpr float kRayDistance = 0.01F;
 /// The triangles of a scene, asked from above.
 class SurfaceRays {
  public:
-  /// Copies what it needs. Fails with kInternal when memory runs out.
+  /// Copies what it needs. Fails with kUnsupported when memory is lacking.
   [[nodiscard]] static Result<SurfaceRays> build(const TriangleMesh& mesh);
 
   /// Whether rays down over the whole footprint, its border included, all meet a surface within
