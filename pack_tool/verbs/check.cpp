@@ -28,13 +28,25 @@ struct Task {
   std::optional<CheckedPack> done;
 };
 
+/// One name for each file, whatever way leads to it.
+fs::path nameOf(const fs::path& file) {
+  std::error_code unknown;
+  const fs::path name = fs::weakly_canonical(file, unknown);
+  return unknown ? file : name;
+}
+
+/// Each pack once, however often it is named.
 std::vector<Task> tasksOf(const std::vector<fs::path>& arguments) {
   std::vector<Task> tasks;
   tasks.reserve(arguments.size());
+  std::set<fs::path> named;
+  const auto add = [&](const fs::path& pack) {
+    if (named.insert(nameOf(pack)).second) tasks.push_back({pack, std::nullopt});
+  };
   for (const fs::path& argument : arguments) {
     std::error_code unknown;
     if (!fs::is_directory(argument, unknown)) {
-      tasks.push_back({argument, std::nullopt});
+      add(argument);
       continue;
     }
     const auto found = findPacks(argument);
@@ -42,7 +54,7 @@ std::vector<Task> tasksOf(const std::vector<fs::path>& arguments) {
       tasks.push_back({argument, badPack(argument.string(), found.error())});
       continue;
     }
-    for (const fs::path& pack : *found) tasks.push_back({pack, std::nullopt});
+    for (const fs::path& pack : *found) add(pack);
   }
   return tasks;
 }
@@ -59,13 +71,6 @@ void check(std::span<Task* const> tasks, std::uint32_t threads) {
       tasks[n]->done = badPack(pack.string(), error);
     }
   });
-}
-
-/// One name for each file, whatever way leads to it.
-fs::path nameOf(const fs::path& file) {
-  std::error_code unknown;
-  const fs::path name = fs::weakly_canonical(file, unknown);
-  return unknown ? file : name;
 }
 
 bool isWorld(const fs::path& pack) {

@@ -270,6 +270,18 @@ TEST_F(CheckMany, SearchesFoldersInTheOrderOfTheirPaths) {
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
 }
 
+TEST_F(CheckMany, ChecksAPackOnceHoweverOftenItIsNamed) {
+  const auto& bad = packs_[0];
+  const auto& good = packs_[1];
+  const Outcome outcome = check({.packs = {good, bad, folder_.path() / "below/../room1.pack",
+                                           folder_.path() / "below", bad, folder_.path() / "below"},
+                                 .form = OutputForm::kJson});
+  std::vector<std::string> files;
+  for (const Json& entry : Json::parse(outcome.out)) files.push_back(entry.at("file"));
+  EXPECT_THAT(files, ElementsAre(good.string(), bad.string(),
+                                 (folder_.path() / "below/deep/good.PACK").string()));
+}
+
 TEST(CheckWorlds, TellsOnceOfAPackThatWorldsList) {
   const ScratchFolder folder;
   const auto world = test::writeWorld(folder, WorldFields{});
