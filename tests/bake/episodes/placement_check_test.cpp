@@ -51,5 +51,34 @@ TEST(PlacementCheck, AgreesWithTheRunsPlacement) {
   EXPECT_LT(released, kCases * 9 / 10);
 }
 
+TEST(PlacementCheck, TakesTheEndOfTheGridForNoFloor) {
+  // A table in an open yard whose ground has a gap: below the gap there is nothing.
+  MeshBuilder yard;
+  yard.floor({0, 0, 0}, {1, 0, 2}, 0).floor({1.6F, 0, 0}, {3, 0, 2}, 0);
+  yard.box({2, 0.6F, 0.5F}, {2.6F, 0.7F, 1.5F});
+  const MadeWorld world(yard.build(), stickRobot());
+  const ObjectModel& cube = world.objects().objects().front();
+  const std::vector<float> radii = madeRadii();
+  simulation::PlacementScratch scratch(cube.spheres.size(), radii);
+  const simulation::RestingObjects nothing(1, radii.back());
+  PlacementOptions options;
+  options.attempts = 1;
+  const ColumnGrid& grid = world.scene().grids()[cube.spheres.front().radius_index];
+  const auto agrees = [&](float x) {
+    // The sphere is a little above the lowest height of the grid.
+    const Vec3 center{x, grid.layout().heights.lo + 0.03F, 1};
+    const Pose pose{center - cube.spheres.front().center, {}};
+    RandomStream stream(1, 0, 0, 0);
+    const bool placed =
+        simulation::placeObject({world.scene(), nothing}, cube, pose, stream, options, scratch)
+            .placed;
+    EXPECT_EQ(bake::canBeReleased(world.scene(), cube, pose), placed) << x;
+    return grid.clearance(center);
+  };
+  EXPECT_EQ(agrees(1.3F), Clearance::kFree) << "in the gap";
+  agrees(0.5F);
+  agrees(2.3F);
+}
+
 }  // namespace
 }  // namespace galactic::test::placement_check_test

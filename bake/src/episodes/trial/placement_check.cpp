@@ -5,44 +5,29 @@
 #include <limits>
 #include <optional>
 
-#include "episodes/home/columns_view.h"
 #include "galactic/simulation_options.h"
+#include "support/lift.h"
 
 namespace galactic::bake {
 namespace {
 
 constexpr float kMostLift = PlacementOptions{}.most_lift;
-/// As in the run: rounding does not ask for the same lift again, meters.
-constexpr float kNudge = 1e-4F;
-constexpr int kMostLifts = 16;
-
-/// How far up a center has to go to be free; none when there is no free height above it.
-std::optional<float> liftOutOf(const ColumnGrid& grid, const Vec3& center) {
-  if (grid.clearance(center) == Clearance::kFree) return 0.0F;
-  const std::optional<ColumnIndex> column = grid.columnAt(center.x, center.z);
-  if (!column) return std::nullopt;
-  for (const Span& span : ColumnSpans(grid, column->i, column->k)) {
-    // A column may call a height free that the query, which counts in quanta, does not.
-    if (span.hi > center.y) return std::max(span.lo - center.y, kNudge);
-  }
-  return std::nullopt;
-}
 
 /// The lowest lift with which all spheres are free.
 std::optional<float> liftOutOfScene(const Scene& scene, const ObjectModel& model,
                                     const Pose& world_from_object) {
   float lift = 0;
-  for (int n = 0; n < kMostLifts; ++n) {
+  for (int n = 0; n < detail::kMostLifts; ++n) {
     float more = 0;
     for (const SetSphere& sphere : model.spheres) {
       Vec3 center = world_from_object * sphere.center;
       center.y += lift;
-      const auto needed = liftOutOf(scene.grids()[sphere.radius_index], center);
-      if (!needed) return std::nullopt;
-      more = std::max(more, *needed);
+      const ColumnGrid& grid = scene.grids()[sphere.radius_index];
+      if (grid.clearance(center) == Clearance::kFree) continue;
+      more = std::max(more, std::max(detail::liftOutOf(grid, center), detail::kLiftNudge));
     }
     if (more == 0) return lift;
-    lift += more + kNudge;
+    lift += more + detail::kLiftNudge;
     if (!(lift <= kMostLift)) return std::nullopt;
   }
   return std::nullopt;
@@ -57,7 +42,9 @@ bool canBeReleased(const Scene& scene, const ObjectModel& model, const Pose& wor
   for (const SetSphere& sphere : model.spheres) {
     Vec3 center = world_from_object * sphere.center;
     center.y += *lift;
-    fall = std::min(fall, scene.grids()[sphere.radius_index].contact(center).down);
+    const ColumnGrid& grid = scene.grids()[sphere.radius_index];
+    const float down = grid.contact(center).down;
+    if (detail::hasFloor(grid, center.y - down)) fall = std::min(fall, down);
   }
   return std::abs(*lift - fall) <= kMostLift;
 }

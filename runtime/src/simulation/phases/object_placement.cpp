@@ -7,23 +7,18 @@
 #include <numbers>
 #include <optional>
 
+#include "support/lift.h"
+
 namespace galactic::simulation {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// More than the rounding of a grid's heights, its quantum included, meters.
 constexpr float kLeastClearance = 2e-4F;
-/// Added to a lift so that rounding does not demand the same lift again, meters; the fall that
-/// follows takes it back.
-constexpr float kNudge = 1e-4F;
 /// By how much boxes and spheres may overlap because of rounding, meters.
 constexpr float kRounding = 1e-5F;
-/// A lift out of one thing may lead into another, a few times in a row between shelves.
-constexpr int kMostLifts = 16;
 /// Directions that are tried for one jitter; the second half of them are arbitrary.
 constexpr int kDraws = 4;
-/// The most spans of a column that are read: far more than a building has floors and shelves.
-constexpr std::size_t kMostSpans = 64;
 /// A shorter vector gives no direction, meters.
 constexpr float kLeastDirection = 1e-3F;
 
@@ -63,24 +58,6 @@ class DirectionSum {
   std::int64_t x_ = 0;
   std::int64_t z_ = 0;
 };
-
-/// How far a center that is not free has to rise to be free of the static scene; infinity if there
-/// is no free height above it.
-float liftOutOf(const ColumnGrid& grid, const Vec3& center) {
-  const ColumnGridLayout& layout = grid.layout();
-  const float cell_x = (center.x - layout.min_x) * layout.inverse_spacing;
-  const float cell_z = (center.z - layout.min_z) * layout.inverse_spacing;
-  const bool inside = cell_x >= 0 && cell_x < static_cast<float>(grid.columnsX()) && cell_z >= 0 &&
-                      cell_z < static_cast<float>(grid.columnsZ());
-  if (!inside) return kInfinity;
-  std::array<Span, kMostSpans> spans{};
-  const std::size_t count =
-      grid.spans(static_cast<std::uint32_t>(cell_x), static_cast<std::uint32_t>(cell_z), spans);
-  for (const Span& span : std::span(spans).first(std::min(count, kMostSpans))) {
-    if (span.hi > center.y) return std::max(span.lo - center.y, 0.0F);
-  }
-  return kInfinity;
-}
 
 /// Tries one object among its obstacles at one candidate pose after another.
 class Candidate {
@@ -167,14 +144,14 @@ class Candidate {
   /// none if that exceeds the largest allowed lift, in which case the pushes are set.
   [[nodiscard]] std::optional<float> findLift(const Pose& pose) {
     float lift = 0;
-    for (int n = 0; n < kMostLifts; ++n) {
+    for (int n = 0; n < detail::kMostLifts; ++n) {
       moveTo(raised(pose, lift));
       from_scene_ = {};
       from_objects_ = {};
       const float more =
           std::max(liftOutOfScene(most_lift_ - lift), liftOutOfObjects(most_lift_ - lift));
       if (more == 0) return lift;
-      lift += more + kNudge;
+      lift += more + detail::kLiftNudge;
       if (!(lift <= most_lift_)) return std::nullopt;
     }
     return std::nullopt;
@@ -186,10 +163,10 @@ class Candidate {
     float most = 0;
     forEachSphere([&](std::size_t n, const Vec3& center, const RadiusRange& range) {
       if (scratch_.clearance[n] == Clearance::kFree) return;
-      const float lift = liftOutOf(scene_.grids()[range.radius_index], center);
+      const float lift = detail::liftOutOf(scene_.grids()[range.radius_index], center);
       // A height that is free in the column may not be free in the batched query, which counts in
       // quanta.
-      most = std::max(most, std::max(lift, kNudge));
+      most = std::max(most, std::max(lift, detail::kLiftNudge));
       if (lift > limit) from_scene_.add(box_.center.x - center.x, box_.center.z - center.z);
     });
     return most;
@@ -225,10 +202,9 @@ class Candidate {
   [[nodiscard]] float findFall() const {
     float least = kInfinity;
     forEachSphere([&](std::size_t n, const Vec3& center, const RadiusRange& range) {
-      const ColumnGridLayout& layout = scene_.grids()[range.radius_index].layout();
       const float down = scratch_.down[n];
-      // A span that begins at the bottom of the grid has no floor.
-      if (center.y - down > layout.heights.lo + 2 * layout.quantum) least = std::min(least, down);
+      const ColumnGrid& grid = scene_.grids()[range.radius_index];
+      if (detail::hasFloor(grid, center.y - down)) least = std::min(least, down);
       least = std::min(least, objects_.fall(center, range.radius));
     });
     forEachObjectNear([&](const RestingBox& other) {
