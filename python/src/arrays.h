@@ -17,15 +17,15 @@ namespace py = pybind11;
 /// Sizes along the axes.
 using Shape = std::vector<py::ssize_t>;
 
-/// Of a value: "list".
+/// The name of a value's Python type, such as "list".
 [[nodiscard]] std::string typeName(const py::handle& value);
 
-/// "(128, 11)", as Python writes it.
+/// A shape as Python writes it: "(128, 11)".
 [[nodiscard]] std::string shapeText(std::span<const py::ssize_t> shape);
 
-/// Memory of `owner` as a read-only array: no copy. The array holds a reference to the owner, which
-/// therefore outlives it; what it shows changes with the owner's next step. `type` is the one that
-/// Python sees, as large as T.
+/// Memory of `owner` as a read-only array, without a copy. The array holds a reference to the
+/// owner, which therefore outlives it; its contents change with the owner's next step. `type` is
+/// the element type that Python sees, of the same size as T.
 template <class T>
 [[nodiscard]] py::array viewOf(std::span<const T> values, Shape shape, py::handle owner,
                                const py::dtype& type = py::dtype::of<T>()) {
@@ -34,45 +34,45 @@ template <class T>
   return view;
 }
 
-/// Numbers of a caller in rows without gaps: his array where it is one, else a converted copy.
+/// Numbers from a caller as a contiguous array: the given array if it is one, else a converted
+/// copy.
 template <class T>
 using InputArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-/// What a caller gives as `name`, as an array of T in rows without gaps: itself where it is one,
-/// else a converted copy. ValueError when it has another shape, TypeError when it is no array of
-/// numbers, or when they have fractions and T has none.
+/// The argument `name` as a contiguous array of T: the argument itself if it is one, else a
+/// converted copy. Raises ValueError for another shape, and TypeError if it is not an array of
+/// numbers, or if the numbers have fractions and T has none.
 template <class T>
 [[nodiscard]] InputArray<T> inputOf(const py::handle& given, const char* name, const Shape& shape);
 
-/// The same for whole numbers of any type, which are not rounded: TypeError for others, and
-/// IndexError for what 64 bits with a sign do not hold.
+/// The same for whole numbers of any type. Nothing is rounded: raises TypeError for other numbers,
+/// and IndexError for those that do not fit in a signed 64-bit integer.
 [[nodiscard]] InputArray<std::int64_t> wholeNumbersOf(const py::handle& given, const char* name,
                                                       const Shape& shape);
 
-/// What a caller gives as `name`, as an array of numbers of any shape. TypeError for others, whom
-/// numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
+/// The argument `name` as an array of numbers of any shape. Raises TypeError for other types that
+/// numpy would convert: it would parse text, and drop the imaginary part of complex numbers.
 [[nodiscard]] py::array numbersIn(const py::handle& given, const char* name);
 
-/// `given` as `count` finite numbers. ValueError for another shape or numbers that are not finite,
-/// TypeError for what numbersIn() refuses.
+/// `given` as `count` finite numbers. Raises ValueError for another shape or numbers that are not
+/// finite, and TypeError for what numbersIn() rejects.
 [[nodiscard]] std::vector<float> finiteNumbers(const py::handle& given, const char* name,
                                                std::size_t count);
 
-/// `given` as points, float (n, 3), or an empty list; ValueError for another shape or numbers that
-/// are not finite.
+/// `given` as points, float (n, 3), or an empty list. Raises ValueError for another shape or
+/// numbers that are not finite.
 [[nodiscard]] std::vector<Vec3> pointsOf(const py::handle& given, const char* name);
-/// The same of as many points for each of `envs`: float (envs, n, 3), env after env.
+/// The same for n points per env: float (envs, n, 3), one env after the other.
 [[nodiscard]] std::vector<Vec3> pointsOf(const py::handle& given, const char* name,
                                          py::ssize_t envs);
 
-/// Memory of the caller, as `name`, that results are written to: an array of exactly this type and
-/// shape, writable and in rows without gaps; nothing is converted. TypeError or ValueError when it
-/// is another.
+/// The argument `name` as memory for results: an array of exactly this type and shape, writable and
+/// contiguous. Nothing is converted. Raises TypeError or ValueError for anything else.
 template <class T>
 [[nodiscard]] std::span<T> outputOf(const py::handle& given, const char* name, const Shape& shape);
 
-/// The bytes of a bytes-like object, for as long as this lives. TypeError for others, BufferError
-/// for those with gaps.
+/// The bytes of a bytes-like object, while this object lives. Raises TypeError for other objects,
+/// and BufferError for buffers that are not contiguous.
 class InputBytes {
  public:
   explicit InputBytes(const py::handle& given);
@@ -90,13 +90,13 @@ class InputBytes {
   Py_buffer view_{};
 };
 
-/// Writes a transform of homogeneous coordinates, four rows of four.
+/// Writes a transform as a homogeneous matrix, row-major, 4 x 4.
 void writeMatrix(const RigidTransform& a_from_b, float* rows);
 
-/// Answers of C++, 0 or 1, as numpy's truth values: bool (n,).
+/// Truth values from C++, 0 or 1, as a numpy array: bool (n,).
 [[nodiscard]] py::array_t<bool> truthsOf(std::span<const std::uint8_t> answers);
 
-/// Three or four numbers as an array of its own.
+/// A new array with a copy of `values`.
 [[nodiscard]] py::array_t<float> arrayOf(std::span<const float> values);
 
 }  // namespace galactic::python

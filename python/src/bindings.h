@@ -10,7 +10,7 @@ namespace galactic::python {
 
 namespace py = pybind11;
 
-/// What the module holds, in the order in which it has to be made.
+/// The parts of the module, in the order in which they must be bound.
 void bindErrors(py::module_& module);
 void bindWorld(py::module_& module);
 void bindEnvState(py::module_& module);
@@ -23,15 +23,15 @@ void bindPolicy(py::module_& module);
 void bindScriptedPolicy(py::module_& module);
 void bindRenderer(py::module_& module);
 
-/// Text that comes from a file, such as a name in a pack: bytes that are no UTF-8, which names of
-/// files may have, become U+FFFD.
+/// Text from a file, such as a name in a pack. Bytes that are not UTF-8, as in some file names,
+/// become U+FFFD.
 [[nodiscard]] py::str fileText(std::string_view text);
 
-/// An enum.IntEnum, whose values are the numbers that arrays hold.
+/// Adds an enum.IntEnum to the module; arrays hold its values as numbers.
 void bindEnum(py::module_& module, const char* name,
               const std::vector<std::pair<std::string, int>>& values, const char* documentation);
 
-/// Makes pickling and copying objects of a class a TypeError that says what to do `instead`.
+/// Makes pickling and copying objects of a class raise a TypeError that says what to do `instead`.
 void refusePickling(const py::object& type, const char* instead);
 
 }  // namespace galactic::python

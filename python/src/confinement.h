@@ -7,13 +7,14 @@
 
 namespace galactic::python {
 
-/// Keeps an object to one thread at a time: calls release the interpreter's lock, so a second
-/// thread could come in. Its flag is read and written under the lock only.
+/// Restricts an object to one thread at a time: calls release the interpreter's lock, so a second
+/// thread could enter. The flag is read and written only under the lock.
 class Confinement {
  public:
   explicit Confinement(const char* what) : what_(what) {}
 
-  /// One call's use of the object, from before the lock is released until it is taken again.
+  /// The use of the object by one call, from before it releases the lock until it has taken it
+  /// again.
   class Use {
    public:
     explicit Use(bool& in_use) : in_use_(&in_use) { in_use = true; }
@@ -29,7 +30,7 @@ class Confinement {
     bool* in_use_;
   };
 
-  /// RuntimeError while another thread uses the object.
+  /// Begins a use. Raises RuntimeError while another thread uses the object.
   [[nodiscard]] Use enter() {
     if (in_use_) {
       throw std::runtime_error(std::string("another thread is using this galactic.") + what_ +

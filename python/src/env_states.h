@@ -10,24 +10,25 @@
 
 namespace galactic::python {
 
-/// galactic.EnvState: with what the objects are called.
+/// galactic.EnvState: an EnvState with the names of its objects.
 struct NamedEnvState : EnvState {
   std::vector<std::string> object_names;
 };
 
-/// Of one env.
+/// The state of one env.
 [[nodiscard]] NamedEnvState envState(Simulator& simulator, const py::object& env);
 
-/// The galactic.EnvStates of all envs, for None, or of a list of them.
+/// The galactic.EnvStates of the envs in a list, or of all for None.
 [[nodiscard]] py::object envStates(Simulator& simulator, const py::object& envs);
 
-/// TypeError for what is no galactic.EnvStates.
+/// Raises TypeError for anything but a galactic.EnvStates.
 void requireStates(const py::object& states);
 
-/// Raises what setStates() would raise because of galactic.EnvStates, and does nothing else.
+/// Raises what setStates() would raise for these galactic.EnvStates, and does nothing else.
 void checkStates(Simulator& simulator, const py::object& states);
 
-/// Envs go on from galactic.EnvStates, all of them for None, or those of a list: bool (n,), where.
+/// Sets the envs in a list, or all for None, to galactic.EnvStates. Returns bool (n,): which envs
+/// were set.
 [[nodiscard]] py::array_t<bool> setStates(Simulator& simulator, const py::object& states,
                                           const py::object& envs, bool are_drawn);
 

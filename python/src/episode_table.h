@@ -7,7 +7,7 @@ namespace galactic::python {
 
 namespace py = pybind11;
 
-/// What all episodes of a world are about: a galactic.EpisodeTable.
+/// A galactic.EpisodeTable of all episodes of a world.
 [[nodiscard]] py::object episodeTableOf(const World& world);
 
 }  // namespace galactic::python

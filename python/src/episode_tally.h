@@ -11,30 +11,31 @@
 
 namespace galactic::python {
 
-/// The return and length of each env's episode, and which of them the last step ended: all that a
-/// vector environment says of a step, in one pass over the envs where numpy needs twenty calls.
+/// The return and length of each env's episode, and which episodes the last step ended: everything
+/// that a vector environment reports about a step, in one pass over the envs where numpy would need
+/// twenty calls.
 class EpisodeTally {
  public:
-  /// The simulator outlives it.
+  /// The simulator must outlive the tally.
   explicit EpisodeTally(Simulator& simulator);
 
-  /// Takes the last step in, with what it paid, float32 (num_envs,), and how episodes ended in it,
-  /// uint8 (num_envs,): the simulator's, or those of a task of one's own. Returns terminations and
+  /// Adds the last step: its rewards, float32 (num_envs,), and the ends of episodes in it, uint8
+  /// (num_envs,), from the simulator or from a user-defined task. Returns terminations and
   /// truncations, bool (num_envs,), and the numbers of the envs whose episodes ended, int64, in
   /// order.
   [[nodiscard]] py::tuple add(const py::object& rewards, const py::object& endings);
 
-  /// Of the episodes that the step taken in last ended, arrays (num_envs,) with zeros for all other
-  /// envs: "ended" bool, "r" float32, "l" int64, "ending" uint8, "success" bool, "picked" bool
-  /// (whether the target had been in the hand), "episode_index" int32 (-1). Their sums begin anew,
-  /// with the episodes that the envs are in now.
+  /// Describes the episodes that the last added step ended, in arrays (num_envs,) with zeros for
+  /// all other envs: "ended" bool, "r" float32, "l" int64, "ending" uint8, "success" bool, "picked"
+  /// bool (whether the target was in the hand at any time), "episode_index" int32 (-1 for other
+  /// envs). Resets the sums of these envs for the episodes that they are in now.
   [[nodiscard]] py::dict takeEnded();
 
-  /// The sums of the envs in `mask`, bool (num_envs,), begin anew; any env may be in another
+  /// Resets the sums of the envs in `mask`, bool (num_envs,). Every env may be in a different
   /// episode now.
   void restart(const py::object& mask);
 
-  /// Goes on from sums that returns() and lengths() showed once.
+  /// Continues from earlier values of returns() and lengths().
   void restore(const py::object& returns, const py::object& lengths);
 
   [[nodiscard]] std::span<const double> returns() const { return returns_; }
@@ -48,8 +49,8 @@ class EpisodeTally {
   std::vector<double> returns_;
   std::vector<std::int64_t> lengths_;
   std::vector<std::int32_t> episodes_;
-  /// Envs whose episodes the step taken in last ended, how, and whether the target had been in the
-  /// hand.
+  /// The envs whose episodes the last added step ended, how they ended, and whether the target was
+  /// in the hand at any time.
   std::vector<std::size_t> ended_;
   std::vector<std::uint8_t> endings_;
   std::vector<bool> picked_;

@@ -14,7 +14,7 @@ namespace galactic::python {
 inline std::array<float, 3> numbersOf(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline std::array<float, 4> numbersOf(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
 
-/// An array that is written from its first element on.
+/// An array that is filled from its first element on.
 template <class T>
 class Filled {
  public:
@@ -29,7 +29,7 @@ class Filled {
   T* next_;
 };
 
-/// galactic.Poses of some shape.
+/// galactic.Poses of a given shape, filled from the first pose on.
 class FilledPoses {
  public:
   explicit FilledPoses(const Shape& shape)

@@ -18,7 +18,7 @@
 
 namespace galactic::python {
 
-/// What Renderer is made with, besides its simulator.
+/// The options of a Renderer.
 struct CameraOptions {
   RenderOptions render;
   CameraWish camera;
@@ -26,12 +26,12 @@ struct CameraOptions {
 };
 
 /// galactic.Renderer: the cameras of a simulator's envs, and the renderer that draws what they see.
-/// Used by one thread at a time. Every member needs the interpreter's lock; the long ones give it
-/// away while they work.
+/// Only one thread may use it at a time. Every member needs the interpreter's lock; those that take
+/// long release it while they work.
 class Renderer {
  public:
   /// Throws the errors of chooseCamera, WorldModels::from and BatchRenderer::create as an
-  /// ErrorException, and one when the simulator was made without body_transforms.
+  /// ErrorException, and one if the simulator was made without body_transforms.
   [[nodiscard]] static std::unique_ptr<Renderer> create(const py::object& simulator,
                                                         const CameraOptions& options);
   ~Renderer();
@@ -40,40 +40,40 @@ class Renderer {
   Renderer(Renderer&&) = delete;
   Renderer& operator=(Renderer&&) = delete;
 
-  /// Draws the envs of the numbers `envs`, or all of them for None, into the arrays of the
-  /// dictionary `out`, or into new ones for what it does not have. Returns all of them by name.
+  /// Draws the envs with the numbers `envs`, or all for None, into the arrays in the dictionary
+  /// `out`, or into new ones if it lacks them. Returns all arrays by name.
   py::dict render(const py::object& out, const py::object& envs);
-  /// The same in two halves: the simulator may step meanwhile.
+  /// The same in two halves; the simulator may step in between.
   void beginRender(const py::object& out, const py::object& envs);
   py::dict endRender();
-  /// Has the camera, which is none on the robot, stand elsewhere when it draws next. Throws an
-  /// ErrorException for places that are none.
+  /// Moves a camera that stands in the world, from the next drawing on. Throws an ErrorException
+  /// for invalid places and for cameras on the robot.
   void placeCamera(const std::vector<RigidTransform>& world_from_camera);
-  /// Draws all envs into the memory of a CUDA device: arrays for DLPack, by name.
+  /// Draws all envs into the memory of a CUDA device; returns arrays for DLPack, by name.
   py::dict renderToDevice(std::uintptr_t stream);
 
   [[nodiscard]] const BatchRenderer& batch() const { return *renderer_; }
-  /// What the numbers of semantic images mean.
+  /// The names that the numbers in semantic images stand for.
   [[nodiscard]] py::tuple semanticNames() const;
-  /// int32, for each of them: the scene that it is of, an index into World.scenes, or -1.
+  /// int32: the scene of each of these names, an index into World.scenes, or -1.
   [[nodiscard]] py::array_t<std::int32_t> semanticScenes() const;
-  /// float32 (3, 3): from directions in the frames of worldFromCameras() to pixels. Where fields of
-  /// view differ, (envs, 3, 3), as when images were drawn last.
+  /// float32 (3, 3): maps directions in the frames of worldFromCameras() to pixels. (envs, 3, 3) if
+  /// fields of view differ, as of the last drawing.
   [[nodiscard]] py::array_t<float> intrinsics();
-  /// float32 (envs, 4, 4): where the cameras were when images were drawn last, with the axes of
-  /// images: X to the right, Y down, Z ahead.
+  /// float32 (envs, 4, 4): the poses of the cameras in the last drawing, with the axes of images: X
+  /// to the right, Y down, Z ahead.
   [[nodiscard]] py::array_t<float> worldFromCameras();
-  /// By name, float32 (envs,): the noise that the episodes had drawn when images were drawn last.
+  /// By name, float32 (envs,): the noise that the episodes had drawn, as of the last drawing.
   [[nodiscard]] py::dict episodeNoise();
-  /// Of the images of one env, by name: shape and type.
+  /// Shape and type of the images of one env, by name.
   [[nodiscard]] py::dict shapes() const;
 
  private:
   Renderer(const py::object& simulator, WorldModels models);
 
-  /// Copies the simulator's state, and returns the views of the envs that are asked for.
+  /// Copies the simulator's state, and returns the views of the requested envs.
   std::span<const RenderView> viewsOf(const py::object& envs);
-  /// Where `count` images go, of what `out` has and of new arrays, which become images_.
+  /// The memory for `count` images: arrays from `out`, or else new ones. Remembers them in images_.
   [[nodiscard]] RenderTargets targetsFor(std::size_t count, const py::object& out);
   void requireIdle() const;
 
@@ -81,12 +81,12 @@ class Renderer {
   Confinement confinement_{"Renderer"};
   WorldModels models_;
   std::optional<WorldViews> views_;
-  /// What it moves with; empty where it stands in the world.
+  /// What the camera moves with; empty if it stands in the world.
   std::string mount_;
-  /// Whether fields of view differ.
+  /// Whether fields of view differ between envs.
   bool has_fovs_ = false;
   std::vector<RenderView> chosen_;
-  /// Arrays by name; those of a rendering under way stay until it is done.
+  /// Arrays by name, kept at least until the current rendering is done.
   py::dict images_;
   bool is_rendering_ = false;
   std::optional<BatchRenderer> renderer_;

@@ -15,12 +15,12 @@ namespace galactic::python {
 
 class Simulator;
 
-/// What a caller gives as `simulator`. TypeError when it is none, such as a VectorEnv.
+/// The argument `simulator`. Raises TypeError if it is something else, such as a VectorEnv.
 [[nodiscard]] Simulator& simulatorOf(const py::object& given);
 
-/// galactic.Simulator: a BatchSimulator that keeps its world, is used by one thread at a time, and
-/// knows whether a step is under way. Every member needs the interpreter's lock; the long ones give
-/// it away while they work.
+/// galactic.Simulator: a BatchSimulator that keeps its world alive, may be used by one thread at a
+/// time, and checks whether a step is in progress. Every member needs the interpreter's lock; those
+/// that take long release it while they work.
 class Simulator {
  public:
   /// `keywords`: see optionsOf(). Throws what that throws, and the errors of
@@ -32,45 +32,47 @@ class Simulator {
   void step(const py::object& actions, const py::object& resets);
   void beginStep(const py::object& actions, const py::object& resets);
   void endStep();
-  /// `episodes`: see BatchSimulator::reset; all are looked at before anything is done. IndexError
-  /// for numbers that are none, ValueError for those of episodes that are skipped.
+  /// `episodes`: see BatchSimulator::reset; all are checked before anything is done. Raises
+  /// IndexError for numbers of no episode, and ValueError for skipped episodes.
   void reset(const py::object& episodes, bool are_drawn);
-  /// Raises what reset() would, and does nothing.
+  /// Raises what reset() would raise, and does nothing else.
   void checkEpisodes(const py::object& episodes) const;
   void restart(const py::object& seed);
   /// `envs`: None for all, or numbers of envs.
   [[nodiscard]] py::bytes saveState(const py::object& envs);
   void restoreState(const py::object& state, const py::object& envs);
 
-  /// A use of what is there between two steps: RuntimeError while a step is under way.
+  /// Begins a use of the state between two steps. Raises RuntimeError during a step.
   [[nodiscard]] Confinement::Use readState();
 
   [[nodiscard]] const World& world() const { return *world_; }
   [[nodiscard]] const BatchSimulator& batch() const { return batch_; }
   [[nodiscard]] BatchSimulator& batch() { return batch_; }
 
-  /// What the number of an env means, and a list of numbers. TypeError for what is no number, also
-  /// for truth values: a mask is no list of 0 and 1. IndexError for those that are not there.
+  /// An env number, and a list of them, from Python. They raise TypeError for anything but numbers,
+  /// also for truth values, as a mask is not a list of 0 and 1, and IndexError for envs that do not
+  /// exist.
   [[nodiscard]] std::uint32_t envNumber(const py::handle& env) const;
   [[nodiscard]] std::vector<std::uint32_t> envNumbers(const py::object& envs) const;
-  /// The same of where saved envs go, BatchSimulator::kNoEnv where that is None.
+  /// The same for the envs into which saved ones go; None becomes BatchSimulator::kNoEnv.
   [[nodiscard]] std::vector<std::uint32_t> placesOf(const py::object& envs) const;
-  /// The same, or the numbers of all envs for None.
+  /// envNumbers(), or the numbers of all envs for None.
   [[nodiscard]] std::vector<std::uint32_t> allOrThose(const py::object& envs) const;
 
-  /// Throws for what is no number of an episode that can be started: see reset().
+  /// Throws unless `number` is that of an episode that can start, or from `least` to -1: see
+  /// reset().
   void requireEpisode(std::int64_t number, std::int32_t least = 0) const;
 
-  /// The most objects that an env can have.
+  /// The largest number of objects that an env can have.
   [[nodiscard]] std::size_t mostObjects() const {
     return batch_.options().task.distractors ? world_->mostObjects() : 1;
   }
 
-  /// For shapes.
+  /// The number of envs, for shapes.
   [[nodiscard]] py::ssize_t envs() const { return static_cast<py::ssize_t>(batch_.envCount()); }
 
  private:
-  /// What a step reads, which has to stay as it is while the step is under way.
+  /// The input of a step, which must not change during the step.
   struct StepInput {
     InputArray<float> actions;
     InputArray<std::int32_t> resets;
@@ -82,15 +84,16 @@ class Simulator {
   using EpisodeNumbers = InputArray<std::int32_t>;
 
   Simulator(std::shared_ptr<const World> world, BatchSimulator batch);
-  /// What `given` says of each env: an episode that can be started, or one of the numbers that mean
-  /// something else, which are `least` to -1.
+  /// The number that `given` has for each env: an episode that can start, or a special number from
+  /// `least` to -1.
   [[nodiscard]] EpisodeNumbers episodeNumbers(const py::object& given, const char* name,
                                               std::int32_t least) const;
   [[nodiscard]] StepInput inputOfStep(const py::object& actions, const py::object& resets) const;
 
   std::shared_ptr<const World> world_;
   Confinement confinement_{"Simulator"};
-  /// Of the step under way, which reads it until the batch is gone: so before the batch.
+  /// The input of the current step. Declared before the batch, whose threads may read it until the
+  /// batch is destroyed.
   StepInput input_;
   BatchSimulator batch_;
 };
