@@ -28,8 +28,8 @@ std::string typeText(const py::handle& type) { return py::str(type).cast<std::st
   throw py::type_error(fmt::format("{} is {}, expected an array of whole numbers", name, found));
 }
 
-/// Throws for an array of numbers that whole ones would cut off. An empty list has no fractions,
-/// though numpy's type for it has.
+/// Throws for an array whose numbers a conversion to integers would truncate. An empty list is
+/// fine, though numpy makes it an array of floats.
 void requireNoFractions(const py::handle& given, const char* name) {
   const py::array array = py::array::ensure(given);
   if (!array) return PyErr_Clear();
@@ -107,7 +107,7 @@ InputArray<std::int64_t> wholeNumbersOf(const py::handle& given, const char* nam
   }
   auto numbers = inputOf<std::int64_t>(array, name, shape);
   if (kind == 'u' && array.itemsize() == sizeof(std::int64_t)) {
-    // A sign is a bit that was lost.
+    // A negative number here means that an unsigned one did not fit.
     const std::span values(numbers.data(), static_cast<std::size_t>(numbers.size()));
     const auto wrong = std::ranges::find_if(values, [](std::int64_t one) { return one < 0; });
     if (wrong != values.end()) {
@@ -134,7 +134,7 @@ py::array numbersIn(const py::handle& given, const char* name) {
 }
 
 std::vector<float> finiteNumbers(const py::handle& given, const char* name, std::size_t count) {
-  // Planners ask millions of times: what is of the type is no other number.
+  // Planners call this millions of times: skip the check for arrays of the right type.
   if (!py::isinstance<py::array_t<float>>(given)) static_cast<void>(numbersIn(given, name));
   const auto array = inputOf<float>(given, name, {static_cast<py::ssize_t>(count)});
   std::vector<float> numbers(array.data(), array.data() + count);

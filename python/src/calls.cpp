@@ -14,13 +14,13 @@
 namespace galactic::python {
 namespace {
 
-/// A first argument of any type, but only once conversions are tried: what takes one comes after
-/// all other signatures of its function.
+/// A first argument of any type, accepted only when pybind11 tries conversions: so its signature is
+/// tried after all others of the function.
 struct LastResort {
   py::handle value;
 };
 
-/// Where nothing is given.
+/// The value if no argument was given.
 py::ellipsis nothing() { return {}; }
 
 }  // namespace
@@ -49,8 +49,8 @@ void replaceAll(std::string& text, std::string_view from, std::string_view to) {
   }
 }
 
-/// "actions, resets=None" of pybind11's "step(self: galactic._core.Simulator, actions: object,
-/// resets: object = None) -> None".
+/// Turns pybind11's "step(self: galactic._core.Simulator, actions: object, resets: object = None)
+/// -> None" into "actions, resets=None".
 std::string parametersIn(std::string_view signature) {
   const std::size_t first = signature.find('(') + 1;
   std::string text(signature.substr(first, signature.rfind(") ->") - first));
@@ -62,7 +62,7 @@ std::string parametersIn(std::string_view signature) {
   return text;
 }
 
-/// "ndarray, reset=int".
+/// The types of the given arguments, as "ndarray, reset=int".
 std::string typesOf(const LastResort& first, const py::args& others, const py::kwargs& keywords) {
   std::string text;
   const auto add = [&text](const std::string& one) { text += (text.empty() ? "" : ", ") + one; };
@@ -76,8 +76,8 @@ std::string listed(const std::string& text) {
   return text.empty() ? "nothing" : fmt::format("({})", text);
 }
 
-/// Gives a method a last signature, which says what it takes and what it was given. Its
-/// documentation stays.
+/// Adds a last signature to a method, which throws the TypeError. The method keeps its
+/// documentation.
 void refuseOtherCalls(const py::handle& type, const std::string& name, const py::handle& member) {
   const auto method = py::reinterpret_borrow<py::object>(PyInstanceMethod_Function(member.ptr()));
   const std::string documentation = py::str(method.attr("__doc__"));
@@ -92,13 +92,14 @@ void refuseOtherCalls(const py::handle& type, const std::string& name, const py:
   };
   const py::cpp_function added(refuse, py::name(name.c_str()), py::is_method(type),
                                py::sibling(method), py::arg() = nothing());
-  // pybind11 has listed the new signature there, and allocates and frees the text like this.
+  // pybind11 has added the new signature to this text, which it allocates and frees in the same
+  // way.
   PyMethodDef& definition = *reinterpret_cast<PyCFunctionObject*>(method.ptr())->m_ml;
   std::free(const_cast<char*>(definition.ml_doc));
   definition.ml_doc = strdup(documentation.c_str());
 }
 
-/// Of pybind11: no enums.
+/// The classes of the module that pybind11 made, which excludes enums.
 std::vector<py::type> classesOf(const py::module_& module) {
   std::vector<py::type> classes;
   for (const auto& [_, member] : py::dict(module.attr("__dict__"))) {
@@ -123,8 +124,7 @@ void refuseOtherCalls(const py::module_& module) {
 
 void refuseBlankObjects(const py::module_& module) {
   for (const py::type& type : classesOf(module)) {
-    // What pybind11 calls where it is to hand on an object that has not been constructed, and for
-    // nothing else.
+    // pybind11 calls this only if it has to pass on an object that was not constructed.
     py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(type.ptr()))->operator_new =
         [](std::size_t) -> void* {
       throw py::type_error(

@@ -28,7 +28,7 @@ struct DlTensor {
   std::int32_t axes = 0;
   DlType type;
   std::int64_t* shape = nullptr;
-  /// Null: rows without gaps.
+  /// Null: contiguous.
   std::int64_t* strides = nullptr;
   std::uint64_t byte_offset = 0;
 };
@@ -42,7 +42,7 @@ static_assert(sizeof(DlManagedTensor) == 64 && offsetof(DlTensor, shape) == 24);
 
 constexpr const char* kCapsuleName = "dltensor";
 
-/// What a consumer holds: the tensor, its shape, and who owns the memory.
+/// What a consumer holds: the tensor, its shape, and the owner of the memory.
 struct Export {
   DlManagedTensor managed;
   std::vector<std::int64_t> shape;
@@ -50,7 +50,7 @@ struct Export {
 };
 
 void release(DlManagedTensor* managed) {
-  // From any thread of the consumer.
+  // May be called from any thread of the consumer.
   const py::gil_scoped_acquire locked;
   delete static_cast<Export*>(managed->context);
 }
@@ -64,7 +64,7 @@ DlType typeOf(ElementType type) {
   return {.code = kUnsigned, .bits = 8};
 }
 
-/// Images are complete before there is a DeviceArray of them, so no stream has to wait for them.
+/// Images are complete before they become a DeviceArray, so no stream has to wait for them.
 void requireStream(const py::object& stream) {
   if (stream.is_none() || stream.cast<std::int64_t>() != 0) return;
   throw py::buffer_error("stream 0 is ambiguous on CUDA; give 1 or 2 for a default stream");
@@ -95,7 +95,8 @@ py::capsule DeviceArray::capsule(const Wish& wish) const {
   held->managed.context = held.get();
   held->managed.deleter = &release;
   DlManagedTensor* managed = &held.release()->managed;
-  // A consumer renames the capsule and takes over what it holds; else it goes with the capsule.
+  // A consumer renames the capsule and takes over its contents; otherwise they are freed with the
+  // capsule.
   return py::capsule(managed, kCapsuleName, [](PyObject* capsule) {
     if (PyCapsule_IsValid(capsule, kCapsuleName) == 0) return;
     auto* unused = static_cast<DlManagedTensor*>(PyCapsule_GetPointer(capsule, kCapsuleName));

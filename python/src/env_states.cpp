@@ -19,7 +19,7 @@ namespace galactic::python {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-/// In place of the objects that an env does not have.
+/// Fills the places of objects that an env does not have.
 constexpr Pose kNoPose{{kNan, kNan, kNan}, {kNan, kNan, kNan, kNan}};
 constexpr std::int32_t kNoObject = -1;
 
@@ -86,7 +86,7 @@ NamedEnvState stateIn(const py::tuple& state) {
           state[10].cast<std::vector<std::string>>()};
 }
 
-/// Whoever made the tuple: what its numbers point to is there.
+/// The tuple may come from anywhere: check that its indices exist.
 NamedEnvState unpickled(const py::tuple& tuple) {
   NamedEnvState state = stateIn(tuple);
   const std::size_t count = state.objects.size();
@@ -160,7 +160,7 @@ py::object envStates(Simulator& simulator, const py::object& envs) {
 
 namespace {
 
-/// Arrays of a galactic.EnvStates of so many envs, for which requireStates() has looked.
+/// The arrays of a galactic.EnvStates, which requireStates() has checked.
 class GivenStates {
  public:
   GivenStates(const py::object& states, const Simulator& simulator, py::ssize_t count)
@@ -177,7 +177,7 @@ class GivenStates {
         objects_(*this, "objects", {count, most_}),
         goals_(*this, "goal", {count}) {}
 
-  /// State `n`, of an episode that can be started.
+  /// State `n`. Throws unless its episode can start.
   [[nodiscard]] EnvState at(const Simulator& simulator, py::ssize_t n) const {
     simulator.requireEpisode(episode_.data()[n]);
     EnvState state;
@@ -294,34 +294,33 @@ void bindEnvState(py::module_& module) {
   bindPose(module);
   py::class_<NamedEnvState> type(module, "EnvState");
   type.def_readonly("scene", &EnvState::scene, "Index into World.scenes.")
-      .def_readonly("episode", &EnvState::episode, "Index of the world's episodes.")
-      .def_readonly("step", &EnvState::step, "Steps of the episode.")
+      .def_readonly("episode", &EnvState::episode, "Index of the episode in the world.")
+      .def_readonly("step", &EnvState::step, "How many steps of the episode are done.")
       .def_readonly("world_from_root", &EnvState::world_from_root, "Pose of the robot's root.")
       .def_property_readonly(
           "joint_positions",
           [](const NamedEnvState& state) { return arrayOf(state.joint_positions); },
-          "float32 (joints,) of the whole robot, radians or meters; World.actions says where in "
-          "it\n"
-          "the joints are that actions move.")
+          "float32 (joints,) of the whole robot, radians or meters; World.actions has the\n"
+          "indices of the joints that actions move.")
       .def_readonly("world_from_grip", &EnvState::world_from_grip,
                     "Pose of the hand: origin at the grasp point, axes of the end effector's link.")
       .def_readonly(
           "objects", &EnvState::objects,
-          "A Pose for each of the episode's objects, in the world; the held one is where\n"
-          "the hand has it.")
+          "A Pose in the world for each of the episode's objects, including the held one.")
       .def_property_readonly(
           "object_names",
           [](const NamedEnvState& state) { return py::tuple(py::cast(state.object_names)); },
-          "What the objects are, in their order.")
+          "Names of the objects, in their order.")
       .def_property_readonly(
           "held",
           [](const NamedEnvState& state) -> py::object {
             if (state.held < 0) return py::none();
             return py::int_(state.held);
           },
-          "Index into objects of what is in the hand; None for nothing.")
-      .def_readonly("target", &EnvState::target, "Index into objects of what is to be moved.")
-      .def_readonly("goal", &EnvState::goal, "Pose in which the target is to be, in the world.");
+          "Index into objects of the object in the hand; None if the hand is empty.")
+      .def_readonly("target", &EnvState::target, "Index into objects of the object to be moved.")
+      .def_readonly("goal", &EnvState::goal,
+                    "Pose in the world to which the target is to be moved.");
   type.def("__repr__", &textOf);
   type.def(py::pickle(&pickled, &unpickled));
   type.attr("__module__") = "galactic";

@@ -30,8 +30,8 @@ std::int32_t EpisodeTally::episodeOf(std::size_t env) const {
   return static_cast<std::int32_t>(simulator_.batch().envObjects(env).episode);
 }
 
-/// In the episode that the last step ended. A task of one's own may have ended one that goes on in
-/// the simulator, which is in it still.
+/// Whether the target was in the hand in the episode that the last step ended. A user-defined task
+/// may have ended an episode that goes on in the simulator, whose env is then still in it.
 bool EpisodeTally::hadPicked(std::size_t env) const {
   const BatchSimulator& batch = simulator_.batch();
   return batch.dones()[env] != 0 ? batch.picks()[env] != 0 : batch.envObjects(env).has_picked;
@@ -124,9 +124,10 @@ void bindEpisodeTally(py::module_& module) {
   py::class_<EpisodeTally> type(module, "EpisodeTally");
   type.def(py::init<Simulator&>(), py::arg("simulator"), py::keep_alive<1, 2>())
       .def("add", &EpisodeTally::add, py::arg("rewards"), py::arg("endings"),
-           "Takes the last step in: (terminations, truncations, the envs whose episodes ended).")
+           "Adds the last step; returns (terminations, truncations, the envs whose episodes\n"
+           "ended).")
       .def("take_ended", &EpisodeTally::takeEnded,
-           "What there is to say of the episodes that the last step ended; their sums begin anew.")
+           "Describes the episodes that the last added step ended, and resets their sums.")
       .def("restart", &EpisodeTally::restart, py::arg("mask"))
       .def("restore", &EpisodeTally::restore, py::arg("returns"), py::arg("lengths"))
       .def_property_readonly("returns",
@@ -141,7 +142,7 @@ void bindEpisodeTally(py::module_& module) {
         return viewOf(tally.lengths(), {count}, self);
       });
   type.doc() =
-      "Returns and lengths of the episodes under way in a Simulator, for vector environments.";
+      "Returns and lengths of the current episodes of a Simulator, for vector environments.";
   refusePickling(type, "save and restore the environment instead");
 }
 

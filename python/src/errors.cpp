@@ -7,7 +7,8 @@
 namespace galactic::python {
 namespace {
 
-/// Makes a galactic.Error of an ErrorException, which may be thrown without the interpreter's lock.
+/// Turns an ErrorException, which may be thrown without the interpreter's lock, into a
+/// galactic.Error.
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);

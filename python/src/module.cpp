@@ -1,4 +1,4 @@
-// galactic._core: thin, typed mirrors of the library's classes. It knows numpy and DLPack, no
+// galactic._core: thin, typed bindings of the library's classes. Uses numpy and DLPack, but not
 // torch.
 #include <string>
 

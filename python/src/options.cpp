@@ -23,7 +23,7 @@ std::string dashed(std::string name) {
   return name;
 }
 
-/// Of the array that a value is; -1 for one that is none.
+/// The number of axes of an array; -1 for anything else.
 py::ssize_t axesOf(const py::handle& value) {
   return py::isinstance<py::array>(value) ? py::reinterpret_borrow<py::array>(value).ndim() : -1;
 }
@@ -40,8 +40,8 @@ std::string kindOf(const py::handle& value) {
                      shapeText({array.shape(), static_cast<std::size_t>(array.ndim())}));
 }
 
-/// A number as text; null, without an error, for what is none. What has an index may still have
-/// none to give: tensors.
+/// A number as text; null, without a Python error, for anything else. An object may have
+/// __index__() and still fail to convert, such as a tensor.
 py::object numberText(const py::handle& value) {
   auto number = py::reinterpret_steal<py::object>(
       PyIndex_Check(value.ptr()) != 0 ? PyNumber_Index(value.ptr()) : nullptr);
@@ -54,7 +54,7 @@ py::object numberText(const py::handle& value) {
   return number ? py::object(py::str(number)) : number;
 }
 
-/// A value as galactic-run reads it.
+/// A value as the text that galactic-run reads.
 std::string textOf(const std::string& keyword, const py::handle& value) {
   if (axesOf(value) == 0) {
     const py::object only = value.attr("item")();
@@ -68,11 +68,12 @@ std::string textOf(const std::string& keyword, const py::handle& value) {
       "the option {} is {}, expected a number, a truth value or a word", keyword, kindOf(value)));
 }
 
-/// Of heights: numbers, and pairs of them, which are ranges. Of a pair, joined by '-', a range.
+/// A list as text: heights are numbers or pairs of numbers, which are ranges; a pair joined by '-'
+/// is a range.
 std::string listText(const std::string& keyword, const py::sequence& values, char between) {
   std::string text;
   for (const auto& element : values) {
-    // Of its own: rows of an array are made when they are asked for.
+    // Keep a reference: rows of an array are created when they are accessed.
     const py::object value = element;
     if (!text.empty()) text += between;
     text +=
@@ -81,7 +82,7 @@ std::string listText(const std::string& keyword, const py::sequence& values, cha
   return text;
 }
 
-/// Of a listed option.
+/// The value of a listed option as a Python object.
 py::object valueOf(const OptionText& option) {
   if (option.is_word) return py::str(option.value);
   if (option.value == "true" || option.value == "false") return py::bool_(option.value == "true");
@@ -110,7 +111,7 @@ std::vector<std::string> knownKeywords() {
        fmt::format("is {}, expected {}", py::repr(value).cast<std::string>(), wanted)}};
 }
 
-/// None for what is not a whole number from 0 to `most`.
+/// nullopt unless the value is a whole number from 0 to `most`.
 std::optional<std::uint64_t> wholeUpTo(const py::handle& value, std::uint64_t most) {
   const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
   const std::uint64_t found = number ? PyLong_AsUnsignedLongLong(number.ptr()) : 0;
@@ -126,7 +127,7 @@ bool mayBeDrawn(const std::string& name) {
   return std::ranges::find(drawn, name) != drawn.end();
 }
 
-/// Gives `options` what keywords name; the names that are of the option table.
+/// Sets `options` from keywords. Returns those that are in the option table.
 std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions& options) {
   std::vector<OptionText> texts;
   for (const auto& [key, value] : keywords) {
@@ -209,7 +210,7 @@ DrawnNumber drawnOf(const char* name, const py::handle& value, const Span& withi
     found = drawnFrom(value.cast<std::string>(), within);
   } else if (isList(value) && py::len(value) == 2) {
     const auto ends = value.cast<py::sequence>();
-    // Of their own: rows of an array are made when they are asked for.
+    // Keep references: rows of an array are created when they are accessed.
     const py::object least = ends[0];
     const py::object most = ends[1];
     found = DrawnNumber(number(least), number(most));

@@ -21,8 +21,8 @@ namespace {
 
 constexpr py::ssize_t kNumbers = 3;
 
-/// Bases with a yaw behind, (4,) or (n, 4), as EpisodeTable.base has them, are points without it;
-/// all else is what it is.
+/// Drops the yaw from bases (4,) or (n, 4), such as EpisodeTable.base; returns anything else
+/// unchanged.
 py::object withoutYaw(const py::handle& given) {
   const py::array rows = py::array::ensure(given);
   if (!rows) PyErr_Clear();
@@ -51,7 +51,7 @@ py::array_t<float> rowsOf(std::span<const Vec3> points) {
   return rows;
 }
 
-/// Which goal each of `count` bases goes to: `given`, or the first one.
+/// The goal of each of `count` bases: from `given`, or the first goal.
 std::vector<std::size_t> goalsOf(const GeodesicFields& fields, const py::object& given,
                                  std::size_t count) {
   std::vector<std::size_t> which(count);
@@ -118,7 +118,7 @@ std::unique_ptr<PathFinder> makeFinder(const World& world, const py::object& sce
   return std::make_unique<PathFinder>(orThrow(PathFinder::create(world, number, place, ground)));
 }
 
-/// Floats or truths of all cells, (columns in Z, columns in X).
+/// The shape of arrays over all cells: (columns in Z, columns in X).
 Shape cellsOf(const PathFinder& finder) { return {finder.columnsZ(), finder.columnsX()}; }
 
 py::array_t<bool> navigable(const PathFinder& finder) {
@@ -159,21 +159,23 @@ void bindFields(py::module_& module) {
   type.def("__len__", &GeodesicFields::size)
       .def_property_readonly(
           "goals", [](const GeodesicFields& fields) { return rowsOf(fields.goals()); },
-          "float32 (k, 3), world frame, meters.")
+          "The goals: float32 (k, 3), world frame, meters.")
       .def("distances", &distances, py::arg("bases"), py::arg("goals") = py::none(),
-           "How long the ways are, meters: float32 (n,), inf where there is none within 127 m.\n\n"
-           "bases: (n, 3), of bases or roots, at most three cells beside the floor and half a "
-           "meter\n"
-           "above it, or (n, 4) with a yaw behind, which plays no part. goals: int (n,), to which\n"
-           "goal each of them goes; None: all to the first.")
+           "Lengths of the shortest paths, meters: float32 (n,), inf if there is none within\n"
+           "127 m.\n\n"
+           "bases: (n, 3), positions of bases or roots, at most three cells beside the floor\n"
+           "and half a meter above it, or (n, 4) with a yaw, which is ignored. goals: int (n,),\n"
+           "the goal for each base; None: the first goal for all.")
       .def("directions", &directions, py::arg("bases"), py::arg("goals") = py::none(),
-           "Unit directions in which the ways begin, world frame: float32 (n, 3), y is 0; zeros\n"
-           "without a way and at its end. bases, goals: as in distances().")
+           "Unit directions in which the shortest paths begin, world frame: float32 (n, 3), y\n"
+           "is 0; zeros if there is no path, and at its end. bases, goals: as in distances().")
       .def("path", &path, py::arg("base"), py::arg("goal") = 0,
-           "Corners of a path along straight lines over the floor, float32 (m, 3), from the base,\n"
-           "(3,) or (4,), to a goal, or to where the hand reaches it; (0, 3) where there is none.");
+           "Corners of a path of straight lines over the floor, float32 (m, 3), from the base,\n"
+           "(3,) or (4,), to a goal, or to where the hand reaches it; (0, 3) if there is no\n"
+           "path.");
   type.doc() =
-      "Shortest ways along a floor to k goals, from everywhere: what PathFinder.fields() returns.";
+      "Shortest paths along a floor to k goals from everywhere, as returned by\n"
+      "PathFinder.fields().";
   type.attr("__module__") = "galactic";
   refusePickling(type, "make them with PathFinder.fields()");
 }
@@ -186,12 +188,11 @@ void bindPathFinder(py::module_& module) {
   type.def(py::init(&makeFinder), py::arg("world"), py::arg("scene"), py::arg("start"),
            py::kw_only(), py::arg("floor_rise") = py::none(), py::arg("floor_drop") = py::none(),
            py::keep_alive<1, 2>(),
-           "The floor is that at or under `start`, (3,) or (4,), where a base or a root is, in\n"
-           "cells of `cell_size`: those in which the robot's start pose is free of the static "
-           "scene\n"
-           "in some heading, a step (floor_rise, floor_drop) from one to the next. Objects are not "
-           "in\n"
-           "the way. scene: index into World.scenes. galactic.Error where nothing can stand there.")
+           "Explores the floor at or under `start`, (3,) or (4,), the position of a base or a\n"
+           "root. The floor consists of the cells of size `cell_size` in which the robot's\n"
+           "start pose is free of the static scene in some heading, and which are connected by\n"
+           "steps within floor_rise and floor_drop. Objects are ignored. scene: index into\n"
+           "World.scenes. Raises galactic.Error if the robot cannot stand at `start`.")
       .def_property_readonly_static("cell_size",
                                     [](const py::object&) { return PathFinder::cellSize(); })
       .def_property_readonly(
@@ -207,25 +208,26 @@ void bindPathFinder(py::module_& module) {
             std::ranges::copy(finder.heights(), cells.mutable_data());
             return cells;
           },
-          "float32, as `navigable`: of the floor, meters; NaN where the robot cannot go.")
+          "Heights of the floor, meters: float32, of the shape of `navigable`; NaN where the\n"
+          "robot cannot go.")
       .def_property_readonly(
           "places", [](const PathFinder& finder) { return rowsOf(finder.places()); },
-          "float32 (m, 3): the middles of all navigable cells. Draw from them for random places.")
+          "float32 (m, 3): the centers of all navigable cells. Draw from these for random\n"
+          "places.")
       .def("is_navigable", &areNavigable, py::arg("bases"),
-           "Whether bases, (n, 3) or (n, 4), may be there: bool (n,).")
+           "Whether bases, (n, 3) or (n, 4), are at navigable places: bool (n,).")
       .def("snap", &snapped, py::arg("points"),
            "The nearest of `places` for each of the points, (n, 3): float32 (n, 3).")
       .def("fields", &fieldsTo, py::arg("goals"), py::kw_only(),
            py::arg("hand").noconvert() = false, py::arg("threads") = 0,
-           "Shortest ways to goals, (k, 3), from everywhere on the floor: GeodesicFields. Goals "
-           "are\n"
-           "navigable places of the base, or with hand=True points that the hand is to reach, as\n"
-           "the sensor `geodesic` has it. threads: 0 for all.")
+           "Shortest paths to goals, (k, 3), from everywhere on the floor: GeodesicFields.\n"
+           "Goals are navigable places of the base or, with hand=True, points for the hand to\n"
+           "reach, as in the sensor `geodesic`. threads: 0 for all.")
       .def("__repr__", [](const PathFinder& finder) {
         return fmt::format("<galactic.PathFinder of {} places>", finder.places().size());
       });
   type.doc() =
-      "Where the robot of a world can drive on one floor of a scene, and shortest ways there.\n\n"
+      "Where the robot of a world can drive on one floor of a scene, and shortest paths there.\n"
       "Maps have cells of `cell_size`, meters.";
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from its world");

@@ -26,7 +26,7 @@
 namespace galactic::python {
 namespace {
 
-/// Rows of `columns` finite numbers, (n, columns), or one for all, (columns,).
+/// Rows of `columns` finite numbers: (n, columns), or (columns,) for a row that applies to all.
 class Rows {
  public:
   Rows(const py::handle& given, const char* name, std::size_t columns) : columns_(columns) {
@@ -57,7 +57,8 @@ class Rows {
   bool is_one_ = false;
 };
 
-/// How many rows arrays of such names have together, where one may be for all of the others.
+/// The common number of rows of several named arrays, without those that have one row for all.
+/// Raises ValueError if they differ.
 std::size_t countOf(std::initializer_list<std::pair<const char*, const Rows*>> arrays) {
   const std::pair<const char*, const Rows*>* first = nullptr;
   for (const auto& array : arrays) {
@@ -70,7 +71,7 @@ std::size_t countOf(std::initializer_list<std::pair<const char*, const Rows*>> a
   return first == nullptr ? 1 : first->second->count();
 }
 
-/// Poses of a robot, for C++.
+/// Poses of a robot in the form that C++ takes.
 class GivenPoses {
  public:
   GivenPoses(const Rows& bases, const Rows& joints, std::size_t count) {
@@ -94,7 +95,7 @@ std::span<float> spanOf(py::array_t<float>& array) {
   return {array.mutable_data(), static_cast<std::size_t>(array.size())};
 }
 
-/// galactic.Clearances in the making.
+/// Memory for clearances, and their conversion to galactic.Clearances.
 class MadeClearances {
  public:
   MadeClearances(std::size_t poses, std::size_t spheres, std::size_t positions)
@@ -103,7 +104,7 @@ class MadeClearances {
         bases_(withLast(kBaseNumbers)),
         joints_(withLast(positions)) {}
 
-  // Where C++ writes.
+  // The memory into which C++ writes.
   [[nodiscard]] std::span<SphereClearance> clearances() { return clearances_; }
   [[nodiscard]] ClearanceGradients gradients() { return {spanOf(bases_), spanOf(joints_)}; }
 
@@ -127,7 +128,7 @@ class MadeClearances {
   [[nodiscard]] Shape withLast(std::size_t last) const {
     return {shape_[0], shape_[1], static_cast<py::ssize_t>(last)};
   }
-  /// The link that carries each sphere, what is held included.
+  /// The link that carries each sphere, including those of the held object.
   [[nodiscard]] py::array_t<std::int32_t> linksOf(const Robot& robot) const {
     py::array_t<std::int32_t> links(shape_[1]);
     std::int32_t* next = links.mutable_data();
@@ -145,9 +146,8 @@ class MadeClearances {
   py::array_t<float> joints_;
 };
 
-/// galactic.PlanningScene: a PlanningScene of one env of a simulator, which it keeps. Calls of
-/// several threads come one after the other, under the interpreter's lock; what gives it away works
-/// with a copy.
+/// galactic.PlanningScene: a PlanningScene of one env of a simulator, which it keeps alive. The
+/// interpreter's lock serializes calls from several threads; calls that release it work on a copy.
 class EnvScene {
  public:
   EnvScene(const py::object& simulator, const py::object& env)
@@ -330,7 +330,7 @@ class EnvScene {
   }
 
  private:
-  /// Of x, y, z and yaw.
+  /// A base from x, y, z and yaw.
   static BasePlace placeOf(const py::object& base) {
     const std::vector<float> numbers = finiteNumbers(base, "base", kBaseNumbers);
     return {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
@@ -342,8 +342,8 @@ class EnvScene {
     if (!std::isfinite(margin)) throw py::value_error("margin is not a finite number");
   }
 
-  /// galactic.Poses of (n, `each`), or of (n,) where that is 0: what `put` makes of the links of
-  /// each row.
+  /// galactic.Poses of (n, `each`), or of (n,) if that is 0: `put` adds the poses for each row,
+  /// given those of its links.
   template <class Put>
   [[nodiscard]] py::object posesOf(const py::object& bases, const py::object& joints,
                                    std::size_t each, const Put& put) const {
@@ -366,7 +366,7 @@ class EnvScene {
     return poses.poses(py::module_::import("galactic.env_states"));
   }
 
-  /// A state itself, or that of an env.
+  /// The state that was given, or that of the env with the given number.
   [[nodiscard]] EnvState stateOf(const py::object& env) const {
     if (py::isinstance<NamedEnvState>(env)) return env.cast<const NamedEnvState&>();
     const Confinement::Use use = simulator_->readState();
@@ -385,116 +385,116 @@ void bindPlanningScene(py::module_& module) {
   py::class_<EnvScene> type(module, "PlanningScene");
   type.def(py::init<const py::object&, const py::object&>(), py::arg("simulator"),
            py::arg("env") = 0, py::keep_alive<1, 2>(),
-           "Of the world and the options of a simulator. Takes over a state, as update() does.");
+           "Uses the world and the options of a simulator, and takes over the state of `env`,\n"
+           "as update() does.");
   type.doc() =
-      "What a planner asks about one env: is a pose of the robot free, where is the hand,\n"
-      "what would it grasp, where would an object land? By the rules of the simulation,\n"
-      "which is neither changed nor stepped.\n\n"
-      "Bases are four numbers: x, y, z of the point on the floor under the robot's root,\n"
-      "meters, and the yaw, radians. Answers are about the env and the joints that update()\n"
-      "and set_joints() took over last.";
-  type.def(
-          "update", &EnvScene::update, py::arg("env"),
-          "Takes over a state: its objects, what the robot holds, its joints.\n\n"
-          "env: number of an env, as it is now, or an EnvState of the same world. What penetrates\n"
-          "something there does not count, until count_free(): of the held object all, of the\n"
-          "robot what is in resting objects. So has the simulation it after a grasp and after a\n"
-          "release.")
+      "Answers a planner's questions about one env: is a pose of the robot free, where is the\n"
+      "hand, what would it grasp, where would an object land? The rules are those of the\n"
+      "simulation, which is neither changed nor stepped.\n\n"
+      "A base is four numbers: x, y, z of the point on the floor under the robot's root,\n"
+      "meters, and the yaw, radians. Answers refer to the state and the joints of the last\n"
+      "update() and set_joints().";
+  type.def("update", &EnvScene::update, py::arg("env"),
+           "Takes over a state: its objects, what the robot holds, its joints. env: number of an\n"
+           "env, for its current state, or an EnvState of the same world. Spheres of the held\n"
+           "object that penetrate something in this state, and spheres of the robot that\n"
+           "penetrate resting objects, are ignored until count_free(), as in the simulation\n"
+           "after a grasp and after a release.")
       .def("set_joints", &EnvScene::setJoints, py::arg("joint_positions"),
-           "Joint positions for what is asked next: (positions,), as in EnvState, radians or\n"
-           "meters. Limits are not enforced.")
+           "Sets the joint positions for the following questions: (positions,), as in EnvState,\n"
+           "radians or meters. Limits are not enforced.")
       .def_property_readonly("base", &EnvScene::base,
-                             "Where the base of the env was at the last update: float32 (4,).")
+                             "The base of the env at the last update(): float32 (4,).")
       .def_property_readonly("root_from_links", &EnvScene::rootFromLinks,
                              "The poses of all links for these joints (forward kinematics), in\n"
                              "the order of World.links.")
       .def_property_readonly("reach", &EnvScene::reach,
-                             "How far the robot reaches from its root's vertical axis, meters.")
+                             "How far the robot reaches from the vertical axis through its\n"
+                             "root, meters.")
       .def("world_from_root", &EnvScene::worldFromRoot, py::arg("base"), "Pose of the root link.")
       .def("world_from_grip", &EnvScene::worldFromGrip, py::arg("base"),
-           "Origin at the grasp point, axes of the end effector's link.")
-      .def(
-          "is_free", &EnvScene::isFree, py::arg("base"),
-          "Whether neither the robot nor what it holds penetrates anything. What carries the base\n"
-          "is another question, floor_at(): half a meter above the floor, a base is free.")
+           "Pose of the hand: origin at the grasp point, axes of the end effector's link.")
+      .def("is_free", &EnvScene::isFree, py::arg("base"),
+           "Whether neither the robot nor what it holds penetrates anything. This does not check\n"
+           "for a floor under the base, which floor_at() does: half a meter above the floor, a\n"
+           "base is free.")
       .def("floor_at", &EnvScene::floorAt, py::arg("x"), py::arg("z"), py::arg("from_height"),
-           "Height of the floor for a base that comes from a height, meters; None where it\n"
-           "cannot stand.")
+           "Height of the floor at x and z for a base that comes from a given height, meters;\n"
+           "None if it cannot stand there.")
       .def("are_free", &EnvScene::areFree, py::arg("bases"), py::arg("joint_positions"),
            py::kw_only(), py::arg("threads") = 1,
-           "is_free() of many poses, whatever set_joints() has said: bool (n,).\n\n"
-           "bases: (n, 4), or (4,) for all. joint_positions: (n, positions), or (positions,) for\n"
-           "all. threads: 0 for all; the interpreter goes on meanwhile.")
-      .def(
-          "motions_free", &EnvScene::areMotionsFree, py::arg("bases"), py::arg("joint_positions"),
-          py::arg("to_bases"), py::arg("to_joint_positions"), py::kw_only(), py::arg("threads") = 1,
-          "Whether the robot gets from one pose to another on the straight way, both ends\n"
-          "included: bool (n,).\n\n"
-          "Arrays: as of are_free(). The base drives along a line, turning the shorter way round,\n"
-          "and joints move evenly, those without limits the shorter way round. As with\n"
-          "continuous_collision=True, no sphere moves further than its radius from one place that\n"
-          "is looked at to the next; each has to be free, on a floor that carries the base from\n"
-          "one to the next. The height of `bases` says which floor, that of `to_bases` where the\n"
-          "way ends. What update() or hold() ignored counts from where it is free on.")
-      .def(
-          "clearances", &EnvScene::clearances, py::arg("bases"), py::arg("joint_positions"),
-          py::arg("most"), py::kw_only(), py::arg("threads") = 1,
-          "How far each sphere of the robot, and of what it holds, is from the scene and the "
-          "objects\n"
-          "at rest in many poses, whatever set_joints() has said: Clearances.\n\n"
-          "Arrays: as of are_free(). most, meters, > 0: what is farther is not looked for, and "
-          "the\n"
-          "distance is `most`; -`most` where the scene is penetrated deeper. The least distance of "
-          "a\n"
-          "pose is below 0 where is_free() says False, and only there, to 0.1 mm.\n\n"
-          "Objects are exact. Of the scene, distances are those to where the sphere's column grid\n"
-          "says free no more, or again: exact to its cells, which are up to half their diagonal "
-          "off\n"
-          "(2.1 cm with cells of 3 cm). Spheres that only the base moves keep their height: "
-          "theirs\n"
-          "are the distances in the horizontal plane, or the floor would be nearest everywhere.\n"
-          "Those that do not count (ignore_penetrating(), count_free()) are `most` away.")
+           "is_free() for many poses, independent of set_joints(): bool (n,). bases: (n, 4), or\n"
+           "(4,) for all. joint_positions: (n, positions), or (positions,) for all. threads: 0\n"
+           "for all; the call releases the interpreter's lock.")
+      .def("motions_free", &EnvScene::areMotionsFree, py::arg("bases"), py::arg("joint_positions"),
+           py::arg("to_bases"), py::arg("to_joint_positions"), py::kw_only(),
+           py::arg("threads") = 1,
+           "Whether the robot can move from one pose to another along the straight path, both\n"
+           "ends included: bool (n,).\n\n"
+           "Arrays: as in are_free(). The base drives along a line and turns the shorter way\n"
+           "round; joints move uniformly, those without limits the shorter way round. As with\n"
+           "continuous_collision=True, no sphere moves further than its radius between two\n"
+           "checked poses; each of these must be free, and the floor must carry the base from\n"
+           "one to the next. The heights of `bases` select the floor on which the path begins,\n"
+           "and those of `to_bases` where it must end. Spheres that update() or hold() ignored\n"
+           "count again once they are free.")
+      .def("clearances", &EnvScene::clearances, py::arg("bases"), py::arg("joint_positions"),
+           py::arg("most"), py::kw_only(), py::arg("threads") = 1,
+           "How far each sphere of the robot, and of what it holds, is from the scene and the\n"
+           "resting objects in many poses, independent of set_joints(): Clearances. Arrays: as\n"
+           "in are_free(). most, meters, > 0: larger distances are reported as `most`, and\n"
+           "deeper penetrations of the scene as -`most`. The smallest distance of a pose is\n"
+           "negative exactly if is_free() is False, to within 0.1 mm.\n\n"
+           "Distances to objects are exact. Distances to the scene are those to the boundary of\n"
+           "the free space in the sphere's column grid, and accurate to half the diagonal of its\n"
+           "cells (2.1 cm with cells of 3 cm). Spheres that only the base moves keep their\n"
+           "height, so theirs are distances in the horizontal plane; otherwise the floor would\n"
+           "be nearest everywhere. Ignored spheres (ignore_penetrating(), count_free()) are\n"
+           "`most` away.")
       .def("touches_itself", &EnvScene::touchesItself, py::arg("margin") = 0.0F,
-           "Whether the robot touches itself with these joints, or comes nearer to that than\n"
-           "`margin`, meters. Spheres of links that touch where an episode starts do not count.\n"
-           "The simulation does not ask: its robots pass through themselves.")
+           "Whether the robot touches itself with these joints, or comes closer to itself than\n"
+           "`margin`, meters. Links whose spheres touch in the pose at the start of an episode\n"
+           "are not checked against each other. The simulation does not check this: its robots\n"
+           "pass through themselves.")
       .def("touch_themselves", &EnvScene::touchThemselves, py::arg("joint_positions"),
            py::arg("margin") = 0.0F,
            "touches_itself() for many joint positions, (n, positions): bool (n,).")
       .def("world_from_links", &EnvScene::worldFromLinks, py::arg("bases"),
            py::arg("joint_positions"),
-           "The poses of all links in many poses of the robot: Poses of (n, links), in the order "
-           "of\n"
-           "World.links. Arrays: as of are_free().")
+           "The poses of all links in many poses of the robot: Poses of (n, links), in the\n"
+           "order of World.links. Arrays: as in are_free().")
       .def("world_from_grips", &EnvScene::worldFromGrips, py::arg("bases"),
            py::arg("joint_positions"),
-           "The poses of the hand in them, as world_from_grip() has one: Poses of (n,).")
+           "world_from_grip() for many poses of the robot: Poses of (n,). Arrays: as in\n"
+           "are_free().")
       .def("bases_of", &EnvScene::basesOf, py::arg("states"),
-           "The bases of n envs, of an EnvStates, whatever scenes they are in: float32 (n, 4).")
+           "The bases of n envs, from an EnvStates: float32 (n, 4). The envs may be in any\n"
+           "scene.")
       .def("floors_at", &EnvScene::floorsAt, py::arg("bases"),
-           "Heights of the floor for bases, (n, 4), that come from their y: float32 (n,), NaN "
-           "where\n"
-           "one cannot stand. The yaw plays no part.")
+           "floor_at() for many bases, (n, 4), each from its own height: float32 (n,), NaN\n"
+           "where a base cannot stand. The yaw is ignored.")
       .def("grasped_at", &EnvScene::graspedAt, py::arg("base"),
-           "Index of the object that a hand grasps that closes here, or None.")
+           "Index of the object that the hand would grasp if it closed here, or None.")
       .def("hold", &EnvScene::hold, py::arg("object"), py::arg("base"),
-           "Holds an object as if it were grasped here: spheres of it that penetrate something do\n"
-           "not count, see ignore_penetrating(). galactic.Error where the hand is not empty.")
+           "Holds an object as if it had been grasped here: its spheres that penetrate\n"
+           "something are ignored, see ignore_penetrating(). Raises galactic.Error if the hand\n"
+           "is not empty.")
       .def("put_back", &EnvScene::putBack,
-           "Puts what hold() took back to where it rested. galactic.Error where it took nothing.")
+           "Puts the object that hold() took back where it rested. Raises galactic.Error if\n"
+           "hold() took nothing.")
       .def_property_readonly("is_holding", &EnvScene::isHolding,
-                             "Whether something is in the hand, in the env or by hold().")
+                             "Whether the hand holds something, from the env or by hold().")
       .def("ignore_penetrating", &EnvScene::ignorePenetrating, py::arg("base"),
-           "Of the held object, those spheres do not count from now on that penetrate something\n"
-           "here, and all others do. update() and hold() have done so where the robot of the env\n"
-           "is, or where the object was grasped. Nothing happens where the hand is empty.")
+           "From now on, ignores those spheres of the held object that penetrate something\n"
+           "here, and no others. update() and hold() do so where the robot is, and where the\n"
+           "object was grasped. Does nothing if the hand is empty.")
       .def("count_free", &EnvScene::countFree, py::arg("base"),
-           "What does not count and is free here counts again, of the held object and of the\n"
-           "robot. The simulation does so in each place that a robot comes to: call this along a\n"
-           "way from where an object was grasped or released.")
+           "Ignored spheres of the held object and of the robot that are free here count again.\n"
+           "The simulation does this wherever a robot moves: call it along a path from where an\n"
+           "object was grasped or released.")
       .def("landing", &EnvScene::landing, py::arg("base"),
            "Pose in which the held object comes to rest if it is released here, without random\n"
-           "jitters, or None when it finds no place. galactic.Error where the hand is empty.");
+           "jitter, or None if it finds no place. Raises galactic.Error if the hand is empty.");
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from its simulator");
 }

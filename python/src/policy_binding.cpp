@@ -1,4 +1,4 @@
-// Policy packs: written from what Python knows of a network, and played.
+// Policy packs: writes them from Python's description of a network, and plays them.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -31,7 +31,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// A dictionary whose fields are read by name. KeyError where one is missing.
+/// A dictionary whose fields are read by name. Raises KeyError if one is missing.
 class Fields {
  public:
   explicit Fields(py::dict dict) : dict_(std::move(dict)) {}
@@ -47,7 +47,7 @@ class Fields {
     const auto array = get<InputArray<float>>(name);
     return {array.data(), array.data() + array.size()};
   }
-  /// Empty where it is not there or None.
+  /// Empty if the field is missing or None.
   [[nodiscard]] std::vector<float> optionalFloats(const char* name) const {
     return has(name) ? floats(name) : std::vector<float>();
   }
@@ -62,7 +62,7 @@ using Kind = decltype(PolicyLayer::kind);
 
 using LayerMaker = Kind (*)(const Fields&);
 
-/// What makes each kind of layer, by the name that Python uses.
+/// The functions that make each kind of layer, by the name that Python uses.
 constexpr std::pair<std::string_view, LayerMaker> kLayerMakers[] = {
     {"observation", [](const Fields&) -> Kind { return layer::Observation{}; }},
     {"previous_action", [](const Fields&) -> Kind { return layer::PreviousAction{}; }},
@@ -187,7 +187,7 @@ void writePack(const Path& path, const py::dict& content, const py::dict& traine
   orThrow(writePolicyPack(path, native, provenance));
 }
 
-/// The pack at a path, where many have the checkpoint that it is made of.
+/// Opens a policy pack. Has a helpful message for users who give a checkpoint instead.
 PackFile openPolicy(const Path& path) {
   Result<PackFile> pack = PackFile::open(path);
   if (!pack && pack.error().code == ErrorCode::kInvalidInput && path.extension() == ".pt") {
@@ -217,7 +217,7 @@ class PlayedPolicy {
                                      {envs, static_cast<py::ssize_t>(batch_.observation_size)});
     requireFinite(seen);
     PolicyInputs inputs{.observations = spanOf<float>(seen), .dones = {}, .color = {}, .depth = {}};
-    // They live until the end.
+    // Converted arrays must live until the policy has acted.
     py::object done_rows = dones;
     py::object rgb_rows = rgb;
     py::object depth_rows = depth;
@@ -255,7 +255,7 @@ class PlayedPolicy {
   [[nodiscard]] std::size_t actionCount() const { return batch_.actions; }
 
  private:
-  /// As many as a simulator may have.
+  /// The largest number of envs of a simulator.
   static constexpr std::uint64_t kMostEnvs = 1U << 20U;
 
   PlayedPolicy(const PackFile& pack, std::size_t envs, const LearnedPolicyOptions& options)
@@ -285,7 +285,7 @@ class PlayedPolicy {
     return {rows.data(), static_cast<std::size_t>(rows.size())};
   }
 
-  /// A batch with just what the policy wants.
+  /// A batch with exactly what the policy needs.
   static PolicyBatch batchOf(const PolicyInterface& needs, std::size_t envs) {
     PolicyBatch batch;
     batch.envs = envs;
@@ -331,14 +331,14 @@ py::object imagesOf(const PlayedPolicy& policy) {
 void bindPolicy(py::module_& module) {
   module.def("write_policy_pack", &writePack, py::arg("path"), py::arg("content"),
              py::arg("trained_with"), py::arg("source_name"), py::arg("source"),
-             "Writes a policy pack, atomically, once it is checked; galactic.export knows what the "
-             "dictionaries hold.");
+             "Checks a policy pack and writes it atomically. For the contents of the\n"
+             "dictionaries, see galactic.export.");
   py::class_<PlayedPolicy> type(module, "LearnedPolicy",
                                 R"(A policy pack, played without torch.
 
-It acts on `envs` environments at a time; their rows of observations hold the parts that
-`observation` names, one behind the other. Recurrent states and previous actions are kept for each
-row. The same actions for any number of threads and of other envs.)");
+It acts in `envs` environments at a time. A row of observations is the concatenation of the parts
+that `observation` lists. The policy keeps recurrent states and previous actions for each row.
+Actions do not depend on the number of threads or on the other envs.)");
   type.def(py::init<const Path&, const py::object&, const py::object&, const py::object&,
                     const py::object&>(),
            py::arg("path"), py::arg("envs"), py::kw_only(), py::arg("deterministic") = false,
@@ -348,23 +348,24 @@ row. The same actions for any number of threads and of other envs.)");
            R"(The actions [envs, actions] of the next step, float32, as Simulator.step takes them.
 
 observations  [envs, S] float32, finite
-dones         [envs] bool or uint8: where an episode ended in the last step; None: nowhere
-rgb           [envs, height, width, 3] uint8, where the policy wants images, and else None
-depth         [envs, height, width] float32, meters, the same)")
-      .def("reset", &PlayedPolicy::reset, "All envs begin anew.")
+dones         [envs] bool or uint8: whether an episode ended in the last step; None: in no env
+rgb           [envs, height, width, 3] uint8 if the policy sees colors, else None
+depth         [envs, height, width] float32, meters, if the policy sees depth, else None)")
+      .def("reset", &PlayedPolicy::reset, "All envs begin new episodes.")
       .def_property_readonly(
           "name", [](const PlayedPolicy& p) { return p.needs().name; }, "The policy's name.")
       .def_property_readonly(
           "robot", [](const PlayedPolicy& p) { return p.needs().robot; },
-          "Name of the robot that it moves; empty: any.")
+          "Name of the robot that the policy moves; empty: any.")
       .def_property_readonly(
           "options", [](const PlayedPolicy& p) { return keywordsOf(p.needs().options); },
           "The options of its training's simulation, as keywords of Simulator and VectorEnv.")
       .def_property_readonly("observation", &observationOf,
-                             "Names and sizes of the parts that it reads, in order.")
+                             "Names and sizes of the observation parts that the policy reads,\n"
+                             "in order.")
       .def_property_readonly("images", &imagesOf,
-                             "The options of a Renderer that draws what it wants to see, as\n"
-                             "VectorEnv takes them; None where it needs no images.")
+                             "The options of a Renderer that draws the images that the policy\n"
+                             "needs, as VectorEnv takes them; None if it needs no images.")
       .def("__repr__",
            [](const PlayedPolicy& p) { return "<galactic.LearnedPolicy " + p.needs().name + ">"; })
       .def_property_readonly("action_count", &PlayedPolicy::actionCount, "Columns of the actions.");

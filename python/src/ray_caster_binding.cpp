@@ -31,24 +31,24 @@ std::unique_ptr<RayCaster> casterOfEnv(const py::object& given, const py::object
       simulator.world(), simulator.batch().envState(simulator.envNumber(env)), seen(robot));
 }
 
-/// Lines as a caller gives them.
+/// Lines as given by a caller.
 struct GivenLines {
   const py::object& origins;
   const py::object& directions;
   const py::object& lengths;
 };
 
-/// Lines of which results have a shape of their own: (n,), or (envs, n).
+/// Converted lines, and the shape of their results: (n,), or (envs, n).
 class Lines {
  public:
-  /// For casts through one home.
+  /// Lines for casts through one home.
   explicit Lines(const GivenLines& given)
       : origins_(pointsOf(given.origins, "origins")),
         directions_(directionsOf(given.directions, origins_.size())),
         shape_{static_cast<py::ssize_t>(origins_.size())} {
     readLengths(given.lengths);
   }
-  /// For casts through all envs of a batch.
+  /// Lines for casts through all envs of a batch.
   Lines(const GivenLines& given, py::ssize_t envs)
       : origins_(pointsOf(given.origins, "origins", envs)),
         directions_(pointsOf(given.directions, "directions", envs)),
@@ -58,7 +58,7 @@ class Lines {
 
   [[nodiscard]] CastLines view() const { return {origins_, directions_, lengths_}; }
 
-  /// What `cast` makes of them, which fills the hits that it is given without the interpreter.
+  /// The hits of the lines. `cast` fills them, without the interpreter's lock.
   template <class Cast>
   [[nodiscard]] py::object hitsOf(const Cast& cast) const {
     std::vector<CastHit> hits(origins_.size());
@@ -166,47 +166,53 @@ void bindRayCaster(py::module_& module) {
             {"OBJECT", static_cast<int>(CastEnd::kObject)},
             {"ROBOT", static_cast<int>(CastEnd::kRobot)},
             {"OUTSIDE", static_cast<int>(CastEnd::kOutside)}},
-           "What a ray or a sphere comes to: nothing on all its way, the static scene, an object,\n"
-           "the robot, or the end of the column grid, which does not know what comes then.");
+           "What a ray or a sphere hits: nothing, the static scene, an object, the robot, or\n"
+           "the boundary of the column grid, beyond which nothing is known.");
   const py::object infinity = py::float_(std::numeric_limits<double>::infinity());
   py::class_<RayCaster> type(module, "RayCaster");
   type.def(py::init(&casterOfScene), py::arg("world"), py::arg("scene"), py::keep_alive<1, 2>(),
-           "Of the static scene alone; of_env() has objects. scene: index into World.scenes.")
+           "A caster for the static scene alone; of_env() includes objects. scene: index into\n"
+           "World.scenes.")
       .def_static("of_env", &casterOfEnv, py::arg("simulator"), py::arg("env") = 0, py::kw_only(),
                   py::arg("robot").noconvert() = false,
-                  "Of an env as it is now: with its objects where they are and, with robot=True,\n"
-                  "the robot and what it holds. Make another one after a step.")
+                  "A caster for an env in its current state: with its objects and, with\n"
+                  "robot=True, the robot and what it holds. Make another one after a step.")
       .def("cast_rays", &castRays, py::arg("origins"), py::arg("directions"),
            py::arg("lengths") = infinity, py::kw_only(), py::arg("threads") = 1,
-           "How far rays get, from origins, (n, 3), in directions, (n, 3) or (3,) for all, of any\n"
-           "length but zero: CastHits.\n\n"
-           "lengths: how far to go at most, meters, for all or (n,). Boxes of objects and spheres\n"
-           "of the robot are hit on their surfaces; the scene is what the grid of the smallest\n"
-           "radius says: where a sphere of that radius would touch it. threads: 0 for all.")
+           "How far rays get from origins, (n, 3), in directions, (n, 3) or (3,) for all, of\n"
+           "any length except zero: CastHits.\n\n"
+           "lengths: how far to go at most, meters, for all or (n,). Rays hit objects' boxes\n"
+           "and the robot's spheres on their surfaces, and the scene where a sphere of the\n"
+           "smallest radius would touch it, by the column grid of that radius. threads: 0 for\n"
+           "all.")
       .def("sweep_spheres", &sweepSpheres, py::arg("radius"), py::arg("origins"),
            py::arg("directions"), py::arg("lengths") = infinity, py::kw_only(),
            py::arg("threads") = 1,
-           "How far spheres get before they touch something: CastHits, as of cast_rays().\n\n"
+           "How far spheres get before they touch something: CastHits, as from cast_rays().\n\n"
            "radius: one of World.radii. origins: where their centers begin.")
       .def("spheres_free", &spheresFree, py::arg("radius"), py::arg("centers"), py::kw_only(),
            py::arg("threads") = 1,
-           "Whether spheres touch nothing where they are: bool (n,), what sweep_spheres() says of\n"
-           "ways without length. False also where the grid does not know.\n\n"
-           "radius: one of World.radii. centers: (n, 3), world frame, meters. threads: 0 for all.")
+           "Whether spheres touch nothing where they are: bool (n,), as sweep_spheres() finds\n"
+           "with length 0. Also False outside the column grid.\n\n"
+           "radius: one of World.radii. centers: (n, 3), world frame, meters. threads: 0 for\n"
+           "all.")
       .def_static("cast_rays_in_envs", &castRaysInAll, py::arg("simulator"), py::arg("origins"),
                   py::arg("directions"), py::arg("lengths") = infinity, py::kw_only(),
                   py::arg("robot").noconvert() = false, py::arg("threads") = 1,
-                  "How far rays get in all envs of a simulator as they are now, from origins,\n"
-                  "(num_envs, n, 3), in directions, (num_envs, n, 3): CastHits of shape\n"
-                  "(num_envs, n), as of_env(simulator, env, robot=robot).cast_rays() has them.\n\n"
+                  "How far rays get in all envs of a simulator in their current state, from\n"
+                  "origins, (num_envs, n, 3), in directions, (num_envs, n, 3): CastHits of\n"
+                  "shape (num_envs, n), as from of_env(simulator, env,\n"
+                  "robot=robot).cast_rays().\n\n"
                   "lengths: for all or (num_envs, n). threads share the envs; 0 for all.")
       .def_static("sweep_spheres_in_envs", &sweepSpheresInAll, py::arg("simulator"),
                   py::arg("radius"), py::arg("origins"), py::arg("directions"),
                   py::arg("lengths") = infinity, py::kw_only(),
                   py::arg("robot").noconvert() = false, py::arg("threads") = 1,
-                  "How far spheres get in all envs: as cast_rays_in_envs() for sweep_spheres().");
+                  "How far spheres get in all envs: sweep_spheres() for all envs, like\n"
+                  "cast_rays_in_envs().");
   type.doc() =
-      "Casts rays and sweeps spheres through a home as the simulation knows it. It never changes.";
+      "Casts rays and sweeps spheres through a home as the simulation models it. A caster never\n"
+      "changes.";
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from its world or simulator");
 }

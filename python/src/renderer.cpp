@@ -28,7 +28,7 @@ Shape colorShape(std::size_t count, const RenderOptions& options) {
   return shape;
 }
 
-/// The caller's array of that name, or a new one; remembered in `images`.
+/// The caller's array of that name, or a new one; added to `images`.
 template <class T>
 std::span<T> targetOf(const py::dict& out, const char* name, const Shape& shape, py::dict& images) {
   const py::object array =
@@ -37,7 +37,7 @@ std::span<T> targetOf(const py::dict& out, const char* name, const Shape& shape,
   return outputOf<T>(array, name, shape);
 }
 
-/// Of cameras on the robot, none.
+/// Empty for cameras on the robot.
 void requirePlaces(std::size_t found, std::size_t envs) {
   if (found <= 1 || found == envs) return;
   throw ErrorException{{ErrorCode::kInvalidInput, "world_from_camera",
@@ -53,7 +53,7 @@ Renderer::Renderer(const py::object& simulator, WorldModels models)
 
 Renderer::~Renderer() {
   if (!is_rendering_) return;
-  // The images are still written to. Nobody waits for them, nor for what went wrong.
+  // A rendering may still be writing to the images, so wait for it; its errors no longer matter.
   try {
     renderer_->endRender();
   } catch (const std::exception&) {
@@ -116,7 +116,7 @@ RenderTargets Renderer::targetsFor(std::size_t count, const py::object& out) {
     targets.depth = targetOf<float>(given, "depth", imageShape(count, options), images);
   }
   if (options.semantics) {
-    // Of signed numbers, because torch had no others of 32 bits before 2.3.
+    // Signed, because torch before 2.3 has no unsigned 32-bit integers.
     const auto ids = targetOf<std::int32_t>(given, "semantics", imageShape(count, options), images);
     targets.semantics = {reinterpret_cast<std::uint32_t*>(ids.data()), ids.size()};
   }

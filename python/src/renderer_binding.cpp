@@ -45,7 +45,7 @@ RenderBackend backendOf(const py::handle& value) {
       {ErrorCode::kInvalidInput, "backend", fmt::format("is {}, expected {}", name, wanted)}};
 }
 
-/// Also by its index, a number.
+/// A device by its name, or by its index as a number.
 std::string deviceOf(const py::handle& value) {
   if (PyIndex_Check(value.ptr()) == 0) return wordOf("device", value, "an index or a name");
   return std::to_string(wholeOf("device", value, 0, std::numeric_limits<std::uint16_t>::max()));
@@ -55,7 +55,7 @@ std::uint32_t edgeOf(const char* name, const py::handle& value) {
   return static_cast<std::uint32_t>(wholeOf(name, value, 1, kLargestImage));
 }
 
-/// A row-major matrix of homogeneous coordinates, of a camera with the axes of images.
+/// The place of a camera, from a row-major homogeneous matrix with the axes of images.
 RigidTransform placeOf(const float* rows) {
   constexpr std::array<float, 4> kLastRow{0, 0, 0, 1};
   const std::span last(rows + 12, kLastRow.size());
@@ -68,7 +68,7 @@ RigidTransform placeOf(const float* rows) {
   return worldFromCameraAxes({column(0), column(1), column(2), column(3)});
 }
 
-/// Of a matrix, or of several: (4, 4) or (n, 4, 4).
+/// The places of cameras, from a matrix (4, 4) or several, (n, 4, 4).
 std::vector<RigidTransform> placesOf(const py::handle& value) {
   constexpr const char* kName = "world_from_camera";
   const py::array given = numbersIn(value, kName);
@@ -94,14 +94,14 @@ std::vector<Vec3> someOrOnePoint(py::array given, const char* name) {
   return pointsOf(given, name);
 }
 
-/// What errors call it is its name in Python.
+/// lookAt(), with errors under the name that it has in Python.
 RigidTransform cameraLooking(const Vec3& eye, const Vec3& target) try {
   return lookAt(eye, target);
 } catch (const ErrorException& refused) {
   throw ErrorException{{refused.error().code, "look_at", refused.error().message}};
 }
 
-/// look_at() of Python.
+/// Python's look_at().
 py::array_t<float> matricesOfLooks(const py::object& eye, const py::object& target) {
   const py::array given_eye = numbersIn(eye, "eye");
   const py::array given_target = numbersIn(target, "target");
@@ -132,7 +132,7 @@ py::object tupleOf(const std::array<float, 3>& three) {
   return py::make_tuple(three[0], three[1], three[2]);
 }
 
-/// A keyword of Renderer: what takes its value, and what has it.
+/// A keyword of Renderer: how to set its value, and how to get it.
 struct Keyword {
   std::string_view name;
   void (*take)(CameraOptions&, const py::handle&);
@@ -198,8 +198,7 @@ constexpr Keyword kKeywords[] = {
      [](const CameraOptions& o) -> py::object { return py::int_(o.render.threads); }},
 };
 
-/// Calls `f` with each option that makes images other than they are, or cameras other than they
-/// should be.
+/// Calls `f` with each option that adds noise to images, or jitter to cameras.
 template <class F>
 void forEachNoise(F&& f) {
   for (const auto& option : kImageNoiseOptions) f(option);
@@ -219,7 +218,7 @@ std::vector<std::string> keywordNames() {
   return names;
 }
 
-/// Gives `options` the value of a keyword. Returns whether it is that of one of `table`.
+/// Sets the option of a keyword in `options`, if it is in `table`. Returns whether it is.
 template <std::size_t count, class Options>
 bool takeSensorOption(const std::array<SensorOption<Options>, count>& table,
                       const std::string& keyword, const py::handle& value, Options& options) {
@@ -231,7 +230,7 @@ bool takeSensorOption(const std::array<SensorOption<Options>, count>& table,
   return false;
 }
 
-/// Whether it is a keyword, whose value `options` has then.
+/// Sets the option of a keyword in `options`. Returns whether the keyword exists.
 bool takeKeyword(const std::string& keyword, const py::handle& value, CameraOptions& options) {
   const auto* known = std::ranges::find(kKeywords, std::string_view(keyword), &Keyword::name);
   if (known != std::end(kKeywords)) {
@@ -258,12 +257,12 @@ CameraOptions defaultOptions() {
   return options;
 }
 
-/// A dictionary that nobody changes.
+/// A read-only view of a dictionary.
 py::object readOnly(const py::dict& dictionary) {
   return py::module_::import("types").attr("MappingProxyType")(dictionary);
 }
 
-/// What a keyword that is left out is, by its name.
+/// The default values of all keywords, by name.
 py::object defaults() {
   const CameraOptions options = defaultOptions();
   py::dict values;
@@ -281,14 +280,14 @@ py::object noiseLimits() {
   return readOnly(limits);
 }
 
-/// The keywords of Renderer, with their defaults.
+/// The options from the keywords of Renderer and their defaults.
 CameraOptions optionsFrom(const py::kwargs& keywords) {
   CameraOptions options = defaultOptions();
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (!takeKeyword(name, value, options)) refuseKeyword(name, keywordNames());
   }
-  // The default is on the robot.
+  // The default camera is on the robot, so it must not apply.
   if (!options.camera.world_from_camera.empty() && !keywords.contains("camera")) {
     options.camera.name.clear();
   }
@@ -306,7 +305,7 @@ void bindDeviceArray(py::module_& module) {
   py::class_<DeviceArray> type(module, "DeviceArray");
   type.def(
           "__dlpack__",
-          // The capsule without a version is one that any `max_version` allows.
+          // The unversioned capsule satisfies any `max_version`.
           [](const DeviceArray& one, const py::object& stream, const py::object&,
              const py::object& device, const py::object& copy) {
             return one.capsule({stream, device, copy});
@@ -318,22 +317,24 @@ void bindDeviceArray(py::module_& module) {
           "shape", [](const DeviceArray& one) { return py::tuple(py::cast(one.shape())); });
   type.attr("__module__") = "galactic";
   type.doc() =
-      "Images in the memory of a CUDA device, for from_dlpack() of an array library: no copy.\n\n"
-      "They stay as they are until the renderer draws again; what uses them must be enqueued\n"
-      "before that, on the stream that was named to it or one that this stream waits for.";
+      "Images in the memory of a CUDA device, for from_dlpack() of an array library, without a\n"
+      "copy.\n\n"
+      "Their contents stay until the renderer draws again. Work that uses them must be enqueued\n"
+      "before that, on the stream given to render_to_device(), or on one for which that stream\n"
+      "waits.";
 }
 
 void bindDrawing(py::class_<Renderer>& type) {
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"
-           "out: arrays by name that are drawn to, of exactly the images' shape and type; what it\n"
-           "does not have becomes a new array. envs: numbers of the envs to draw, None for all.");
-  type.def(
-      "begin_render", &Renderer::beginRender, py::arg("out") = py::none(),
-      py::arg("envs") = py::none(),
-      "The first half of render(): copies the state, so that the simulator may step meanwhile.");
+           "out: arrays by name to draw into, of exactly the images' shape and type; missing\n"
+           "ones are created. envs: numbers of the envs to draw, None for all.");
+  type.def("begin_render", &Renderer::beginRender, py::arg("out") = py::none(),
+           py::arg("envs") = py::none(),
+           "The first half of render(): copies the state, so that the simulator may step in the\n"
+           "meantime.");
   type.def("end_render", &Renderer::endRender,
-           "The second half: waits, and returns the images by name.");
+           "The second half of render(): waits, and returns the images by name.");
   type.def(
       "render_to_device",
       [](Renderer& one, const py::object& stream) {
@@ -342,13 +343,13 @@ void bindDrawing(py::class_<Renderer>& type) {
       },
       py::arg("stream") = 0,
       "Draws all envs and leaves the images on the CUDA device, as DeviceArrays by name.\n\n"
-      "stream: the number of the CUDA stream that uses them, as torch.cuda.current_stream()\n"
-      "has it in cuda_stream; 0 is the default stream. What it was told to do with earlier\n"
-      "images is done before they change.\n\n"
-      "Error (UNSUPPORTED) with the soft backend, without CUDA, and with noise.");
+      "stream: the CUDA stream that uses them, as a number, such as\n"
+      "torch.cuda.current_stream().cuda_stream; 0 is the default stream. Work already enqueued\n"
+      "on it finishes before the images change.\n\n"
+      "Raises Error (UNSUPPORTED) with the soft backend, without CUDA, and with noise.");
 }
 
-/// Where it is, and its lens.
+/// Binds the place of the camera, and its lens.
 void bindCamera(py::class_<Renderer>& type) {
   type.def(
       "place_camera",
@@ -356,22 +357,21 @@ void bindCamera(py::class_<Renderer>& type) {
         one.placeCamera(placesOf(world_from_camera));
       },
       py::arg("world_from_camera"),
-      "Has a camera that was made with world_from_camera stand elsewhere, from the next drawing\n"
-      "on: (4, 4) for all envs, or (num_envs, 4, 4), as the Renderer takes it. Error for a camera\n"
-      "on the robot, and for matrices that are no rigid transforms; it stays where it is then.\n"
-      "Jitter and noise follow from the place, too: back there, they are the same.");
+      "Moves a camera that was made with world_from_camera, from the next drawing on: (4, 4)\n"
+      "for all envs, or (num_envs, 4, 4), as the Renderer takes it. Raises Error, and does not\n"
+      "move it, for a camera on the robot and for matrices that are not rigid transforms.\n"
+      "Jitter and noise also depend on the place: back at the old one, they are the same again.");
   type.def_property_readonly(
       "intrinsics", &Renderer::intrinsics,
-      "The camera matrix of all images, float32 (3, 3), or with camera_jitter_fov those of all "
-      "envs\n"
-      "when images were drawn last, (num_envs, 3, 3), pixels: (column, row, 1) of a point is\n"
-      "intrinsics @ (x, y, z) / z, in the axes of world_from_camera. The first pixel's middle is\n"
-      "(0.5, 0.5).");
+      "The camera matrix of all images, float32 (3, 3), or with camera_jitter_fov one for each\n"
+      "env, as of the last drawing, (num_envs, 3, 3), pixels: (column, row, 1) of a point is\n"
+      "intrinsics @ (x, y, z) / z, in the axes of world_from_camera. The center of the first\n"
+      "pixel is (0.5, 0.5).");
   type.def_property_readonly(
       "world_from_camera", &Renderer::worldFromCameras,
-      "Where the cameras of all envs were when images were drawn last: float32 (num_envs, 4, 4),\n"
-      "of a frame whose X leads to the right in the image, Y down, and Z ahead, which depth is\n"
-      "measured along.");
+      "Poses of the cameras of all envs in the last drawing: float32 (num_envs, 4, 4). The X\n"
+      "axis of the camera's frame points to the right in the image, Y down, and Z ahead; depth\n"
+      "is measured along Z.");
 }
 
 }  // namespace
@@ -381,10 +381,10 @@ void bindRenderer(py::module_& module) {
   module.def(
       "look_at", &matricesOfLooks, py::arg("eye"), py::arg("target"),
       "The world_from_camera of a camera at `eye` that looks at `target`: float32 (4, 4), or\n"
-      "(n, 4, 4) where either of them is several points.\n\n"
+      "(n, 4, 4) if either of them is several points.\n\n"
       "eye, target: points in the world, meters, (3,) or (n, 3). The camera is level: up in the\n"
-      "world is up in its images. If it looks straight down, +X is up there, and -X if it looks\n"
-      "straight up. Error where the two are the same point.");
+      "world is up in its images. If it looks straight down, +X is up in the image, and -X if\n"
+      "it looks straight up. Raises Error if both are the same point.");
   py::class_<Renderer> type(module, "Renderer");
   type.def(
       py::init([](const py::object& simulator, const py::kwargs& keywords) {
@@ -392,34 +392,34 @@ void bindRenderer(py::module_& module) {
         return Renderer::create(simulator, optionsFrom(keywords));
       }),
       py::arg("simulator"),
-      "Mounts a camera in each env, or stands it there.\n\n"
+      "Puts a camera into each env, on the robot or standing in the world.\n\n"
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
-      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False,\n"
-      "True or 'objects'; camera='head', 'follow', 'top' or a link; world_from_camera, instead of\n"
-      "that for a camera that stands in the world: a matrix (4, 4), or one for each env,\n"
-      "(num_envs, 4, 4), as the property has them; fov_degrees, vertical, 1 to 175, or 0 for the\n"
-      "camera's own, which is 90 on links and in the world; position=(0, 0, 0), meters ahead, to\n"
-      "the left and up of where the camera or link is, and rpy_degrees=(0, 0, 0), roll, pitch\n"
-      "(down is positive) and yaw by which it is turned there, as in the [camera] of a robot's\n"
-      "recipe; near, meters: what is nearer is not drawn, 0.01 to 100, or 0 for the camera's own;\n"
-      "robot=True, or False for images without the robot, but with what it holds;\n"
-      "backend='auto', 'soft', 'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
-      "A matrix in the world is a rotation within 0.001, and up to 10 km from the origin.\n\n"
-      "For images like those of real cameras, all 0 by default, each a number, or a pair from\n"
-      "which each episode draws its own: depth_noise, the standard\n"
-      "deviation of depth at 1 m, meters, which grows with depth squared; depth_dropout, the\n"
-      "share of pixels without depth; color_noise, the standard deviation of each channel,\n"
-      "levels of 255; light_jitter, by which share an episode may be brighter or darker;\n"
-      "camera_jitter, meters, and camera_jitter_degrees, how far the camera may be from its\n"
-      "place in an episode, and camera_jitter_fov, degrees, how far from its field of view. They "
-      "follow from seed, env, episode and step: an image that is drawn\n"
-      "twice is the same.");
+      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False, True or\n"
+      "'objects'; camera='head', 'follow', 'top' or a link; or world_from_camera for a camera\n"
+      "that stands in the world: a matrix (4, 4), or one for each env, (num_envs, 4, 4), as in\n"
+      "the property of that name; fov_degrees, vertical, 1 to 175, or 0 for the camera's own,\n"
+      "which is 90 on links and in the world; position=(0, 0, 0), offset from the place of the\n"
+      "camera or link, meters ahead, to the left and up, and rpy_degrees=(0, 0, 0), its\n"
+      "rotation there by roll, pitch (down is positive) and yaw, as in the [camera] of a\n"
+      "robot's recipe; near, meters, the distance below which nothing is drawn, 0.01 to 100, or\n"
+      "0 for the camera's own; robot=True, or False for images without the robot, but with what\n"
+      "it holds; backend='auto', 'soft', 'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
+      "Matrices must be rotations to within 0.001, and at most 10 km from the origin.\n\n"
+      "Options for images like those of real cameras, all 0 by default, each a number, or a\n"
+      "range from which each episode draws one: depth_noise, the standard deviation of depth at\n"
+      "1 m, meters, which grows with the square of depth; depth_dropout, the share of pixels\n"
+      "without depth; color_noise, the standard deviation of each channel, in levels of 255;\n"
+      "light_jitter, the share by which an episode may be brighter or darker; camera_jitter,\n"
+      "meters, and camera_jitter_degrees, how far an episode may shift and turn the camera;\n"
+      "camera_jitter_fov, degrees, how far it may change the field of view. Noise depends only\n"
+      "on seed, env, episode and step: an image that is drawn twice is the same.");
   type.doc() =
-      "Draws what cameras on the robots of a simulator or in its homes see, all envs together.\n\n"
+      "Draws what cameras on a simulator's robots or in its homes see, for all envs together.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
-      "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
-      "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.";
+      "'semantics' int32 (N, height, width), indices into semantic_names. With\n"
+      "semantics='objects', object n of an env, as in EnvState.objects, has the id\n"
+      "len(semantic_names) + n instead.";
   type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
   type.attr("NOISE_OPTIONS") = py::tuple(py::cast(noiseNames()));
   type.attr("NOISE_LIMITS") = noiseLimits();
@@ -428,24 +428,24 @@ void bindRenderer(py::module_& module) {
   bindCamera(type);
   type.def(
       "episode_noise", &Renderer::episodeNoise,
-      "The noise that the episode of each env had drawn where options give ranges, when images\n"
-      "were drawn last: depth_noise, depth_dropout, color_noise and light_jitter, float32\n"
-      "(num_envs,), copies.");
+      "The noise of each env's episode in the last drawing, as drawn from the ranges in the\n"
+      "options: depth_noise, depth_dropout, color_noise and light_jitter, float32 (num_envs,),\n"
+      "copies.");
   type.def_property_readonly("shapes", &Renderer::shapes,
-                             "Of one env's images, by name: shape and dtype.");
+                             "Shape and dtype of one env's images, by name.");
   type.def_property_readonly(
       "backend", [](const Renderer& one) { return backendName(one.batch().backend()); },
       "What draws: 'soft', 'gl' or 'cuda'.");
   type.def_property_readonly(
       "description", [](const Renderer& one) { return one.batch().description(); },
-      "The same in words, with the device.");
+      "The backend in words, with the device.");
   type.def_property_readonly("semantic_names", &Renderer::semanticNames,
                              "What the numbers in 'semantics' stand for.");
   type.def_property_readonly(
       "semantic_scenes", &Renderer::semanticScenes,
-      "Which scene each of semantic_names is of, which several may share: int32\n"
-      "(len(semantic_names),), indices into World.scenes, -1 for the background, objects\n"
-      "and links; a copy.");
+      "The scene of each of semantic_names, as scenes may use the same names: int32\n"
+      "(len(semantic_names),), indices into World.scenes, -1 for the background, objects and\n"
+      "links; a copy.");
   type.def("__repr__", [](const Renderer& one) {
     return fmt::format("<galactic.Renderer, {}>", one.batch().description());
   });

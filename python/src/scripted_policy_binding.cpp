@@ -17,7 +17,7 @@
 namespace galactic::python {
 namespace {
 
-/// galactic.ScriptedPolicy: one that acts in the envs of a simulator, which it keeps.
+/// galactic.ScriptedPolicy: acts in the envs of a simulator, which it keeps alive.
 class Expert {
  public:
   Expert(const py::object& simulator, const py::object& most_plans)
@@ -76,7 +76,7 @@ void bindScriptedPolicy(py::module_& module) {
             {"PLACE", static_cast<int>(ScriptedPhase::kPlace)},
             {"FINISH", static_cast<int>(ScriptedPhase::kFinish)},
             {"GAVE_UP", static_cast<int>(ScriptedPhase::kGaveUp)}},
-           "What a ScriptedPolicy is about in an env.");
+           "What a ScriptedPolicy is doing in an env.");
   bindEnum(module, "ScriptedTrouble",
            {{"NONE", static_cast<int>(ScriptedTrouble::kNone)},
             {"NO_WAY_TO_TARGET", static_cast<int>(ScriptedTrouble::kNoWayToTarget)},
@@ -91,26 +91,28 @@ void bindScriptedPolicy(py::module_& module) {
   type.def(
       py::init<const py::object&, const py::object&>(), py::arg("simulator"), py::kw_only(),
       py::arg("most_plans") = ScriptedPolicy::kMostPlans, py::keep_alive<1, 2>(),
-      "simulator: in whose envs it acts; Error when its task is 'none', or when every action or\n"
-      "none grasps, lets go or terminates (grasp_from, release_below, terminate_from).\n"
-      "most_plans: how often it plans in an episode before it gives up. A plan takes some tens of\n"
-      "milliseconds; as many threads as the simulator has make them.");
+      "simulator: the simulator in whose envs the policy acts. Raises Error if its task is\n"
+      "'none', or if every action or no action grasps, lets go or terminates (grasp_from,\n"
+      "release_below, terminate_from). most_plans: how often it plans in an episode before it\n"
+      "gives up. A plan takes tens of milliseconds; plans are made by as many threads as the\n"
+      "simulator has.");
   type.doc() =
-      "Solves Rearrange and Mobile Pick by a plan, made from the whole state of each env: an\n"
+      "Solves Rearrange and Mobile Pick with a plan, made from the full state of each env: an\n"
       "expert to imitate or to compare with. galactic-run's --policy scripted is the same.";
   type.def(
       "act", &Expert::act, py::arg("mask") = py::none(),
       "The actions of the next step of all envs: float32 (num_envs, action_count), for\n"
-      "Simulator.step. You may step with others, such as those of a policy that learns from\n"
-      "it: where the robot is not on the planned way, it steers back or plans anew. Where it has\n"
-      "given up, or an env is idle, actions are 0, but for a hand that keeps what it holds.\n\n"
+      "Simulator.step. You may step with other actions, such as those of a policy that learns\n"
+      "from it: if the robot has left the planned path, the policy steers back or plans anew.\n"
+      "Where it has given up, or an env is idle, actions are 0, except that the hand keeps what\n"
+      "it holds.\n\n"
       "mask: bool or uint8 (num_envs,), the envs to plan and act in; in others, actions are 0.");
   type.def_property_readonly("phases", &Expert::phases,
-                             "What the last act() was about, as numbers of ScriptedPhase: uint8\n"
-                             "(num_envs,), a copy.");
+                             "What the last act() did in each env, as values of ScriptedPhase:\n"
+                             "uint8 (num_envs,), a copy.");
   type.def_property_readonly(
       "troubles", &Expert::troubles,
-      "Why it gave up or planned anew, as numbers of ScriptedTrouble: uint8\n"
+      "Why it gave up or planned anew in each env, as values of ScriptedTrouble: uint8\n"
       "(num_envs,), a copy.");
   type.def("__repr__", [](const Expert& one) {
     return fmt::format("<galactic.ScriptedPolicy in {} envs>", one.envs());

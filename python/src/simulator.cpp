@@ -113,7 +113,7 @@ void Simulator::checkEpisodes(const py::object& episodes) const {
 
 Simulator::EpisodeNumbers Simulator::episodeNumbers(const py::object& given, const char* name,
                                                     std::int32_t least) const {
-  // Of 64 bits first: a number that is too large must not become another one.
+  // Read 64 bits first, so that a number that is too large does not wrap around.
   const auto numbers = wholeNumbersOf(given, name, {envs()});
   EpisodeNumbers narrow(envs());
   std::int32_t* to = narrow.mutable_data();

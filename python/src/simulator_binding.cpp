@@ -131,123 +131,129 @@ py::array_t<std::int32_t> episodes(Simulator& simulator, const py::object& envs)
 void bindStepping(py::class_<Simulator>& type) {
   type.def("step", &Simulator::step, py::arg("actions"), py::arg("resets") = py::none(),
            "One step of all envs.\n\n"
-           "actions: (num_envs, action_count), float32 without a copy; clamped to [-1, 1], NaN\n"
+           "actions: (num_envs, action_count), not copied if float32; clamped to [-1, 1], NaN\n"
            "counts as 0. resets: int32 (num_envs,), for each env the index of an episode that\n"
-           "begins instead of this step's end, STAYS (-1) for none. Indices as in reset().");
+           "begins at the end of this step, or STAYS (-1) for none. Indices as in reset().");
   type.def("begin_step", &Simulator::beginStep, py::arg("actions"), py::arg("resets") = py::none(),
-           "The first half of step(): the simulator's threads work, the caller goes on.\n\n"
-           "Do not write to actions and resets, nor read what the simulator shows, before\n"
-           "end_step() returns.");
-  type.def("end_step", &Simulator::endStep, "The second half: helps, and waits for the end.");
+           "The first half of step(): the simulator's threads begin to work, and the call\n"
+           "returns.\n\n"
+           "Before end_step() returns, do not write to actions and resets, and do not read the\n"
+           "simulator's arrays.");
+  type.def("end_step", &Simulator::endStep,
+           "The second half of step(): helps the threads, and waits for its end.");
   type.def(
       "reset", &Simulator::reset, py::arg("episodes") = py::none(), py::kw_only(),
       py::arg("drawn") = false,
-      "Begins episodes between two steps. A new simulator is at the start of the first ones.\n\n"
+      "Begins episodes between two steps. In a new simulator, the first ones have begun.\n\n"
       "episodes: int32 (num_envs,), for each env the index of an episode, NEXT_EPISODE for the\n"
-      "one whose turn it is, or STAYS; None: the next one in every env. Nothing begins if one is\n"
-      "wrong: IndexError for those that the world does not have, ValueError for\n"
-      "skipped_episodes. drawn: whether chance has chosen these episodes, as the draws of a task\n"
-      "do, and not somebody who compares policies by them: their noise of motion and\n"
-      "localization is then the env's, another one each time, and not the episode's.");
+      "env's next one in order, or STAYS; None: the next one in every env. Nothing begins if\n"
+      "one is wrong: IndexError for episodes that the world does not have, ValueError for\n"
+      "skipped_episodes. drawn: True if the episodes were chosen at random, as by the draws of\n"
+      "a task; then the noise of motion and localization belongs to the env, and differs each\n"
+      "time. False if they were chosen to compare policies; then the noise belongs to the\n"
+      "episode.");
   type.def("check_episodes", &Simulator::checkEpisodes, py::arg("episodes"),
            "Raises what reset() would raise for these episodes, and does nothing else.");
   type.def("restart", &Simulator::restart, py::arg("seed"),
-           "All envs stand at the start of their first episode, as if just made with this seed.");
+           "Puts all envs at the start of their first episode, as if just made with this seed.");
   type.def(
       "set_states", &setStates, py::arg("states"), py::arg("envs") = py::none(), py::kw_only(),
       py::arg("drawn") = true,
-      "Envs go on from states: EnvStates of all of them, or of those with the numbers `envs`, in\n"
-      "that order, as env_states() returns them, changed or not, also of another Simulator.\n\n"
-      "Each env is in states.episode, whose objects and target are there, after states.step\n"
-      "steps of it, with robot, objects and goal where the state says. The base goes to the\n"
-      "floor, which may be floor_rise above it at most and floor_drop below (options; 0.05 m\n"
-      "each), with the yaw of the root's rotation alone, and joints into their\n"
-      "limits. What is held is in the hand as world_from_grip and its pose in objects say, and\n"
-      "follows joints that you change; EnvStates.hold() puts an object there. Objects that rest\n"
-      "are taken as they are: neither laid down, nor looked at for what they are in. scene\n"
-      "and object_kinds play no part. drawn: the luck of an env (noise) is its own; False: that\n"
-      "of the episode, as in reset(). What the last step returned stays, but for observations.\n\n"
-      "bool (n,): where an env has its state; elsewhere it is as it was, as no floor carries the\n"
-      "base, as the robot would penetrate the scene or an object out of the hand's reach, or as\n"
-      "the hand does not touch what it is to hold: the box of that is further from the grasp\n"
-      "point than the hand's sphere reaches. Nothing changes if one is wrong: IndexError and\n"
-      "ValueError for episodes as in reset(), Error for numbers that are not finite, a root that\n"
-      "is tilted by more than 0.1 rad, another target than the episode's, an env that is named\n"
-      "twice or, where ways along the floor are observed or rewarded (geodesic), another goal.");
+      "Sets envs to states: EnvStates for all envs, or for those with the numbers `envs`, in\n"
+      "that order, as env_states() returns them. They may be changed, and may come from another\n"
+      "Simulator.\n\n"
+      "Each env is then in states.episode, with its objects and target, after states.step\n"
+      "steps, with robot, objects and goal as in the state. The base is put on the floor, which\n"
+      "may be up to floor_rise above it or floor_drop below it (options; 0.05 m each), with\n"
+      "only the yaw of the root's rotation; joints are clamped to their limits. A held object\n"
+      "is in the hand as given by world_from_grip and its pose in objects, and moves with\n"
+      "joints that you change; EnvStates.hold() puts an object there. Resting objects stay\n"
+      "where the state puts them: they neither fall, nor are checked for penetration. scene and\n"
+      "object_kinds are ignored. drawn: whether noise belongs to the env; False: to the\n"
+      "episode, as in reset(). Results of the last step stay as they are, except observations.\n\n"
+      "Returns bool (n,): which envs have their state. The others are unchanged, because no\n"
+      "floor carries the base, because the robot would penetrate the scene or an object out of\n"
+      "the hand's reach, or because the hand does not touch the object that it is to hold: the\n"
+      "object's box is further from the grasp point than the radius of the hand's sphere.\n"
+      "Nothing changes if a state is invalid: IndexError and ValueError for episodes as in\n"
+      "reset(); Error for numbers that are not finite, a root that is tilted by more than 0.1\n"
+      "rad, another target than the episode's, an env that is named twice or, if paths along\n"
+      "the floor are observed or rewarded (geodesic), another goal.");
   type.def("check_states", &checkStates, py::arg("states"),
-           "Raises what set_states() would raise because of these states, and does nothing else.");
+           "Raises what set_states() would raise for these states, and does nothing else.");
   type.def("save_state", &Simulator::saveState, py::arg("envs") = py::none(),
-           "The state of all envs as bytes, or of those with the numbers `envs`, in that order:\n"
-           "with what the last step returned, the statistics and the seed. A mask is no list of\n"
-           "numbers: numpy.flatnonzero(mask) is.");
+           "The state of all envs as bytes, or of those with the numbers `envs`, in that order,\n"
+           "including the results of the last step, the statistics and the seed. To select envs\n"
+           "by a mask, pass numpy.flatnonzero(mask).");
   type.def(
       "restore_state", &Simulator::restoreState, py::arg("state"), py::arg("envs") = py::none(),
-      "Goes on from a state that a simulator of the same world and options saved, bit for bit\n"
-      "as that one would have (auto_reset and body_transforms may differ). Into all envs, with\n"
-      "the state's seed; or into those with the numbers `envs`, whose random numbers and\n"
-      "episodes to come stay their own, of a state of the same seed. A state of one env goes into\n"
-      "each of them, to try many plans; of several, each goes into the env that stands in its\n"
-      "place, and nowhere where that is None. With a state of many envs, each saved as often as\n"
-      "it is wanted, envs go on where others are: restore_state(save_state(envs=parents),\n"
-      "envs=range(n)).\n"
-      "Error for bytes that are no such state, where an env is named twice, and where one waits\n"
-      "for its next episode and none does here; nothing changes then.");
+      "Restores a state saved by a simulator of the same world and options (auto_reset and\n"
+      "body_transforms may differ); envs continue from it bit for bit. Without `envs`, restores\n"
+      "all envs and the seed. With `envs`, restores the envs with these numbers, which keep\n"
+      "their own random numbers and future episodes; the seeds must be equal. A state of one\n"
+      "env is copied into each of them, for example to try many plans; of a state of several\n"
+      "envs, each goes into the env at the same place in `envs`, and is dropped if that is\n"
+      "None. To copy envs over others, save each as often as you need it:\n"
+      "restore_state(save_state(envs=parents), envs=range(n)). Raises Error, and changes\n"
+      "nothing, if the bytes are not such a state, if an env is named twice, or if a saved env\n"
+      "waits for its next episode and none does in this simulator.");
 }
 
 void bindResults(py::class_<Simulator>& type) {
   type.def_property_readonly(
       "observations", [](Self self) { return rowsOf(self, of(self).batch().observations()); },
-      "After the last step: float32 (num_envs, observation_size), a view. Where an episode ended,\n"
-      "the first row of the next.");
+      "Observations after the last step: float32 (num_envs, observation_size), a view. Where an\n"
+      "episode ended, the first row of the next one.");
   type.def_property_readonly(
       "final_observations",
       [](Self self) { return rowsOf(self, of(self).batch().finalObservations()); },
-      "Where an episode ended in the last step, its last row: float32 (num_envs,\n"
-      "observation_size), a view; other rows mean nothing.");
+      "The last observation of each episode that ended in the last step: float32 (num_envs,\n"
+      "observation_size), a view; other rows are undefined.");
   type.def_property_readonly(
       "rewards", [](Self self) { return perEnv(self, of(self).batch().rewards()); },
-      "Of the last step: float32 (num_envs,), a view.");
+      "Rewards of the last step: float32 (num_envs,), a view.");
   type.def_property_readonly(
       "dones",
       [](Self self) { return perEnv(self, of(self).batch().dones(), py::dtype::of<bool>()); },
-      "Where an episode ended in the last step: bool (num_envs,), a view.");
+      "Whether an episode ended in the last step: bool (num_envs,), a view.");
   type.def_property_readonly(
       "successes",
       [](Self self) { return perEnv(self, of(self).batch().successes(), py::dtype::of<bool>()); },
-      "Where it ended in success: bool (num_envs,), a view.");
+      "Whether it ended in success: bool (num_envs,), a view.");
   type.def_property_readonly(
       "endings",
       [](Self self) {
         return perEnv(self, of(self).batch().endings(), py::dtype::of<std::uint8_t>());
       },
-      "How it ended, as numbers of EpisodeEnd: uint8 (num_envs,), a view.");
+      "How it ended, as values of EpisodeEnd: uint8 (num_envs,), a view.");
   type.def_property_readonly(
       "picks",
       [](Self self) { return perEnv(self, of(self).batch().picks(), py::dtype::of<bool>()); },
-      "Where it ended and the target had been in the hand at any time of it: bool (num_envs,), a\n"
+      "Whether it ended and the target had been in the hand at some time: bool (num_envs,), a\n"
       "view.");
   type.def_property_readonly(
       "idle",
       [](Self self) { return perEnv(self, of(self).batch().idle(), py::dtype::of<bool>()); },
-      "Where an env has had its share of the episodes (order='partition'), or waits where its\n"
-      "episode ended (auto_reset=False): it stays as it is, and nothing of it counts, until\n"
-      "reset() begins an episode. bool (num_envs,), a view.");
+      "Whether an env has finished its share of the episodes (order='partition'), or waits\n"
+      "after the end of its episode (auto_reset=False): it does not change, and its results do\n"
+      "not count, until reset() begins an episode. bool (num_envs,), a view.");
 }
 
 void bindQueries(py::class_<Simulator>& type) {
   type.def_property_readonly(
-      "num_envs", [](const Simulator& one) { return one.batch().envCount(); }, "How many envs.");
+      "num_envs", [](const Simulator& one) { return one.batch().envCount(); },
+      "The number of envs.");
   type.def_property_readonly(
       "action_count", [](const Simulator& one) { return one.batch().actionCount(); },
-      "Columns of the actions; World.actions says what they do.");
+      "The number of columns of the actions; World.actions describes them.");
   type.def_property_readonly(
       "observation_size", [](const Simulator& one) { return one.batch().observationSize(); },
-      "Columns of the observations; observation_parts says what they are.");
+      "The number of columns of the observations; observation_parts describes them.");
   type.def_property_readonly("observation_parts", &observationParts,
                              "The parts of a row of the observations: name to slice, in order.");
   type.def_property_readonly(
       "thread_count", [](const Simulator& one) { return one.batch().threadCount(); },
-      "How many threads step.");
+      "The number of threads that step.");
   type.def_property_readonly(
       "options",
       [](const Simulator& one) {
@@ -258,11 +264,11 @@ void bindQueries(py::class_<Simulator>& type) {
         keywords.attr("update")(keywordsOf(options));
         return keywords;
       },
-      "All options in force but the number of threads, as keywords of Simulator.");
+      "All options in effect, except the number of threads, as keywords of Simulator.");
   type.def_static(
       "check_options", [](const py::kwargs& options) { (void)taskTextsOf(options); },
-      "Raises what a Simulator would for options that are wrong in any world: TypeError for an\n"
-      "unknown one, with the nearest name, and galactic.Error for a wrong value.");
+      "Raises what a Simulator would raise for options that are wrong in any world: TypeError\n"
+      "for an unknown one, with the nearest name, and galactic.Error for a wrong value.");
   type.def_property_readonly(
       "skipped_episodes",
       [](const Simulator& one) {
@@ -272,11 +278,11 @@ void bindQueries(py::class_<Simulator>& type) {
       "Indices of the episodes in which the robot cannot start.");
   type.def_property_readonly(
       "memory_bytes", [](const Simulator& one) { return one.batch().memoryBytes(); },
-      "Memory of all envs together.");
+      "Memory of all envs together, bytes.");
   type.def_property_readonly(
       "shared_bytes", [](const Simulator& one) { return one.batch().sharedBytes(); },
-      "Memory of what all envs share beside the packs: how episodes begin, what is known of the\n"
-      "floors of all homes, ways along them, and what lasers see.");
+      "Memory that all envs share besides the packs, bytes: how episodes begin, the floors of\n"
+      "all homes, paths along them, and what lasers see.");
   type.def("episodes", &episodes, py::arg("envs") = py::none(),
            "The index of the episode that each env is in, or each of the numbers `envs`: int32,\n"
            "a copy.");
@@ -285,19 +291,20 @@ void bindQueries(py::class_<Simulator>& type) {
            "The states of all envs in arrays, or of those with the numbers `envs`: EnvStates, a\n"
            "copy.");
   type.def("statistics", &statistics, py::arg("env") = py::none(),
-           "What happened in all envs since they were made, added up; or in one of them.");
+           "Counts of what happened since the simulator was made, summed over all envs, or in\n"
+           "one of them.");
   type.def("counts", &counts, py::arg("envs") = py::none(),
-           "The same of each env, or of each of the numbers `envs`, in arrays (n,): copies. What\n"
-           "changes from one step to the next is what happened in it.");
+           "The statistics of each env, or of each of the numbers `envs`, in arrays (n,):\n"
+           "copies. The difference between two steps is what happened in the second.");
   type.def("episode_noise", &episodeNoise, py::arg("envs") = py::none(),
-           "The noise that the episode of each env, or of each of the numbers `envs`, has drawn\n"
-           "where options give ranges: motion_noise, motion_bias, localization_noise,\n"
+           "The noise of the episode of each env, or of each of the numbers `envs`, as drawn\n"
+           "from the ranges in the options: motion_noise, motion_bias, localization_noise,\n"
            "action_delay (uint32, others float32) and laser_noise, (n,), copies.");
   type.def("actions_under_way", &actionsUnderWay, py::arg("env"),
-           "What an env was asked to do and has not done yet, as actions arrive late: float32\n"
-           "(action_delay of its episode, action_count), a copy, the action first that is due in\n"
-           "the next step. Of steps before the episode, nothing moves, and what is asked of hand\n"
-           "and terminate is NaN.");
+           "The actions that an env has been given but has not executed yet, as they are\n"
+           "delayed: float32 (action_delay of its episode, action_count), a copy, starting with\n"
+           "the action due in the next step. Actions for steps before the episode move nothing,\n"
+           "and have NaN for hand and terminate.");
   type.def(
       "sample_phases",
       [](Simulator& one, const py::object& every) {
@@ -310,7 +317,7 @@ void bindQueries(py::class_<Simulator>& type) {
            "Seconds that the threads spent in each phase of the measured steps, added up.");
 }
 
-/// What Python calls each end, and its number.
+/// Python's name of each end, and its number.
 std::vector<std::pair<std::string, int>> episodeEnds() {
   std::vector<std::pair<std::string, int>> ends;
   for (std::size_t n = 0; n < kEpisodeEnds; ++n) {
@@ -320,8 +327,8 @@ std::vector<std::pair<std::string, int>> episodeEnds() {
     }
     ends.emplace_back(std::move(name), static_cast<int>(n));
   }
-  // Of tasks that are written in Python, of which the library knows nothing. Demonstrations keep
-  // the number: the last one that fits, which no end of the library will need.
+  // FAILURE is for tasks that are written in Python; the library does not have it. Demonstrations
+  // store the number, so it is the last one that fits, which no end of the library will ever need.
   constexpr int kFailure = 255;
   static_assert(kEpisodeEnds <= kFailure);
   ends.emplace_back("FAILURE", kFailure);
@@ -333,8 +340,8 @@ std::vector<std::pair<std::string, int>> episodeEnds() {
 void bindSimulator(py::module_& module) {
   bindEnum(
       module, "EpisodeEnd", episodeEnds(),
-      "How an episode ended. TIME_OUT is a truncation, all others behind NONE are terminations; "
-      "FAILURE is what a galactic.Task calls one, and no Simulator says it.");
+      "How an episode ended. TIME_OUT is a truncation, all others after NONE are terminations;\n"
+      "only a galactic.Task reports FAILURE, never a Simulator.");
   py::class_<Simulator> type(module, "Simulator");
   type.def(
       py::init([](const py::object& world, const py::object& envs, const py::kwargs& options) {
@@ -342,7 +349,7 @@ void bindSimulator(py::module_& module) {
           throw py::type_error(
               fmt::format("world is a {}, expected a galactic.World", typeName(world)));
         }
-        // A blank one is refused by its reference alone, not by its pointer.
+        // Casting to a reference rejects a blank object; casting to a pointer does not.
         (void)world.cast<const World&>();
         if (!envs.is_none()) options["envs"] = envs;
         return Simulator::create(world.cast<std::shared_ptr<World>>(), options);
@@ -353,11 +360,11 @@ void bindSimulator(py::module_& module) {
       "order='shuffled', task='pick', no_distractors=True, ...; docs/tools.md has them),\n"
       "threads=0 (one per processor), body_transforms=False (rendering needs them) and\n"
       "auto_reset=True (False: envs whose episode ended are idle until reset()). Options of the\n"
-      "world's task apply where no keyword says otherwise.");
+      "world's task apply unless a keyword overrides them.");
   type.doc() =
       "N environments of one world, stepped together.\n\n"
-      "Arrays that it shows are views: no copy, read-only, valid as long as they are kept\n"
-      "(they keep the simulator), with new contents after each step. One thread at a time.";
+      "Its arrays are read-only views without a copy. They keep the simulator alive, and have\n"
+      "new contents after each step. Only one thread may use a simulator at a time.";
   type.attr("STAYS") = BatchSimulator::kStays;
   type.attr("NEXT_EPISODE") = BatchSimulator::kNextEpisode;
   type.attr("NOISE_OPTIONS") = py::tuple(py::cast(robotNoiseKeywords()));

@@ -102,13 +102,13 @@ struct Action {
   std::optional<std::uint32_t> position = std::nullopt;
 };
 
-/// The largest floats stand for no limit.
+/// The largest floats mean no limit.
 std::optional<float> limitOf(float limit) {
   if (std::abs(limit) >= std::numeric_limits<float>::max()) return std::nullopt;
   return limit;
 }
 
-/// What one position of a planar or floating joint is has no unit here: simulators refuse it.
+/// Positions of planar and floating joints have no unit here: simulators reject them.
 std::optional<std::string> unitOf(JointType type) {
   if (positionCount(type) != 1) return std::nullopt;
   return type == JointType::kPrismatic ? "m" : "rad";
@@ -193,8 +193,9 @@ void bindAction(py::module_& module) {
           "name", [](const Action& action) { return fileText(action.name); },
           "The joint's, or 'forward', 'turn', 'hand' or 'terminate'.")
       .def_readonly("step", &Action::step,
-                    "How far an action of 1 moves in a step, in `unit`; None where nothing moves.")
-      .def_readonly("unit", &Action::unit, "'rad' or 'm'; None for what has none.")
+                    "How far an action of 1 moves in a step, in `unit`; None if the action\n"
+                    "moves nothing.")
+      .def_readonly("unit", &Action::unit, "'rad' or 'm'; None for actions without a unit.")
       .def_readonly(
           "lower", &Action::lower,
           "The joint's lower limit, in `unit`; None for no limit, as of continuous joints.")
@@ -202,10 +203,13 @@ void bindAction(py::module_& module) {
           "upper", &Action::upper,
           "The joint's upper limit, in `unit`; None for no limit, as of continuous joints.")
       .def_readonly("position", &Action::position,
-                    "The joint's index in EnvState.joint_positions; None for what is no joint.");
+                    "The joint's index in EnvState.joint_positions; None if the action does not\n"
+                    "move a joint.");
   type.def("__repr__", &actionText);
   type.attr("__module__") = "galactic";
-  type.doc() = "What one column of the actions does: World.actions has one for each, in order.";
+  type.doc() =
+      "What one column of the actions does. World.actions has one for each column, in\n"
+      "order.";
 }
 
 }  // namespace
@@ -214,48 +218,52 @@ void bindWorld(py::module_& module) {
   bindAction(module);
   py::class_<World, std::shared_ptr<World>> type(module, "World");
   type.doc() =
-      "Scenes, objects, one robot and episodes: all that simulators read. It never changes, and\n"
-      "any number of simulators may share it.";
-  type.def(
-          py::init(&openWorld), py::arg("path"), py::arg("trusted") = false,
-          "Opens packs, which are mapped into memory.\n\n"
-          "path: of a world pack, or a list of packs that make a world together. trusted: whether\n"
-          "to leave out the checks of what is in them, for packs that were checked before. Error\n"
-          "for packs that cannot be read, and for those that make no world.")
-      .def_property_readonly("scenes", &sceneNames, "Names; EnvState.scene is an index.")
+      "Scenes, objects, one robot and episodes: everything that simulators read. A world never\n"
+      "changes, and any number of simulators may share it.";
+  type.def(py::init(&openWorld), py::arg("path"), py::arg("trusted") = false,
+           "Opens packs, which are mapped into memory.\n\n"
+           "path: the path of a world pack, or a list of paths of packs that make up a world.\n"
+           "trusted: skips the checks of their contents, for packs that were checked before.\n"
+           "Raises Error if packs cannot be read, or do not make up a world.")
+      .def_property_readonly("scenes", &sceneNames,
+                             "Names of the scenes; EnvState.scene is an index into\n"
+                             "them.")
       .def_property_readonly("objects", &objectNames,
                              "Names of all objects that episodes place, each once.")
       .def_property_readonly(
           "object_centers", &objectCenters,
-          "Where in the frame of each of them the middle of its box is: float32\n"
-          "(len(objects), 3), meters, a copy.")
+          "The center of each object's box, in the object's frame: float32 (len(objects), 3),\n"
+          "meters, a copy.")
       .def_property_readonly(
           "object_boxes", &objectBoxes,
-          "The oriented box around each of them, in its frame: a galactic.ObjectBoxes, copies.")
+          "The oriented box around each object, in the object's frame: a galactic.ObjectBoxes,\n"
+          "copies.")
       .def_property_readonly(
           "robot", [](const World& world) { return fileText(world.robot().name()); },
           "Name of the robot.")
       .def_property_readonly("links", &linkNames,
-                             "Names of the robot's links, the root's first: in the order of\n"
+                             "Names of the robot's links, the root's first, in the order of\n"
                              "PlanningScene.root_from_links.")
       .def_property_readonly("joints", &jointNames,
-                             "Names of the joints that actions move, in their order.")
+                             "Names of the joints that actions move, in the order of the\n"
+                             "actions.")
       .def_property_readonly(
           "positions", &namesOfPositions,
-          "What the columns of joint_positions are: the names of the whole robot's joints, "
-          "without\n"
-          "those that follow others; with .x, .y and .angle or .x to .qw where one has several.")
+          "Names of the columns of joint_positions: the names of all joints of the robot,\n"
+          "without those that mimic others. Joints with several columns have .x, .y and .angle,\n"
+          "or .x to .qw appended.")
       .def_property_readonly(
           "limits", &limitsOfPositions,
-          "Of the columns of joint_positions, lower and upper: float32 (positions, 2), radians or\n"
-          "meters, -inf and inf where there is none. Actions may keep to narrower ones: `actions`.")
+          "Lower and upper limits of the columns of joint_positions: float32 (positions, 2),\n"
+          "radians or meters, -inf and inf for no limit. Actions may have narrower limits: see\n"
+          "`actions`.")
       .def_property_readonly(
           "actions", [](const World& world) { return py::tuple(py::cast(actionsOf(world))); },
           "What the columns of the actions do: an Action for each, joints first, then forward,\n"
           "turn, hand and terminate.")
       .def_property_readonly(
           "episodes", [](const World& world) { return world.episodes().episodes().size(); },
-          "How many there are; their indices begin at 0.")
+          "The number of episodes; their indices begin at 0.")
       .def("episode_table", &episodeTableOf,
            "Scene, start, target and goal of each episode, in arrays: a galactic.EpisodeTable.")
       .def_property_readonly(
@@ -264,10 +272,11 @@ void bindWorld(py::module_& module) {
             const std::span<const float> radii = world.radii();
             return py::tuple(py::cast(std::vector<float>(radii.begin(), radii.end())));
           },
-          "Of the spheres that scenes answer for, meters, ascending.")
+          "The radii of spheres for which scenes have column grids, meters, ascending.")
       .def_property_readonly(
           "options", [](const World& world) { return keywordsOf(world.withTask()); },
-          "Keywords of Simulator with the values that they have here unless you give others.");
+          "Keywords of Simulator, with the values that they have in this world unless you give\n"
+          "others.");
   type.def("__repr__", [](const World& world) {
     return fileText(fmt::format("<galactic.World of {} scenes, {} episodes, robot {}>",
                                 world.scenes().size(), world.episodes().episodes().size(),

@@ -437,7 +437,7 @@ def test_calls_that_fit_nothing_are_told_what_is_taken_and_what_was_found(world,
     assert scene.floor_at(1, np.float32(1), 1) == scene.floor_at(1.0, 1.0, 1.0)
     assert Simulator.end_step.__doc__ == (
         "end_step(self: galactic._core.Simulator) -> None\n\n"
-        "The second half: helps, and waits for the end.\n"
+        "The second half of step(): helps the threads, and waits for its end.\n"
     )
 
 
