@@ -10,18 +10,18 @@
 
 namespace galactic::dynamics {
 
-/// What a user says of a closed loop.
+/// The user's options for a closed loop.
 struct LoopOptions {
   /// Whether a policy pack takes its likeliest actions.
   bool is_deterministic = false;
-  /// Of what is random.
+  /// Seed of everything random.
   std::uint64_t seed = 1;
   /// Options of the task.
   std::vector<OptionText> task = {};
 };
 
-/// Name each option that decides how episodes are played, once, for all who need the list: the
-/// command line, the journal and the report. They call on `v`
+/// Visit each option that affects how episodes are played: the single list for the command line,
+/// the journal and the report. They call on `v`
 ///   choice(name, field, names, help), real(name, field, Within, help), whole(name, field, Within,
 ///   help), sampling(field): --deterministic and --sampled, task(name, field, help).
 template <class Visitor>
@@ -41,8 +41,8 @@ void visitOptions(LoopOptions& o, Visitor& v) {
          "An option of the task in a closed loop, as galactic-run has it; repeat it");
 }
 
-/// The options with their values, in the order of the visitors; numbers read back exactly. Those of
-/// the task have their own names.
+/// The options with their values, in the order of the visitors; numbers read back exactly. Options
+/// of the task are listed under their own names.
 [[nodiscard]] std::vector<OptionText> listOptions(const WorldOptions& options);
 [[nodiscard]] std::vector<OptionText> listOptions(const LoopOptions& options);
 

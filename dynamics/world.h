@@ -15,9 +15,9 @@
 
 namespace galactic::dynamics {
 
-// Bullet's side of things; what is implemented with Bullet lies in bullet/.
+// The dynamics world. Its implementation with Bullet is in bullet/.
 
-/// A scene's triangles with the tree over them. Immutable: worlds on several threads share it.
+/// A scene's triangles with a tree over them. Immutable: worlds on several threads share it.
 class SceneShape;
 [[nodiscard]] std::shared_ptr<const SceneShape> makeSceneShape(const bake::TriangleMesh& mesh);
 
@@ -25,9 +25,9 @@ class SceneShape;
 struct ObjectSource {
   /// In the object's frame, meters; at least one piece of at least four points.
   std::vector<HullPoints> hulls;
-  /// Kilograms, of even density.
+  /// Kilograms, evenly distributed.
   double mass = 0.5;
-  /// Of the surface; none: that of the world.
+  /// Friction of the surface; none: that of the world.
   std::optional<double> friction = {};
 };
 class ObjectShape;
@@ -37,42 +37,43 @@ class ObjectShape;
 class RobotShape;
 [[nodiscard]] std::shared_ptr<const RobotShape> makeRobotShape(const RobotParts& parts);
 
-/// How the joints follow what the actions ask for.
+/// How the joints follow the actions.
 enum class ArmDrive : std::uint8_t {
   kMotors,     ///< Position motors move bodies with mass.
-  kKinematic,  ///< The joints are where they are asked to be.
+  kKinematic,  ///< The joints are always at their targets.
 };
 
 inline constexpr std::array<std::string_view, 2> kArmDriveNames{"motors", "kinematic"};
 
-/// How the base follows what the actions ask for.
+/// How the base follows the actions.
 enum class BaseDrive : std::uint8_t {
-  kKinematic,  ///< It drives and turns as far as it is asked to, at once.
-  kVelocity,   ///< Its speeds follow those that it is asked for.
+  kKinematic,  ///< Drives and turns exactly as far as the actions say.
+  kVelocity,   ///< Its speeds approach those that the actions ask for.
 };
 inline constexpr std::array<std::string_view, 2> kBaseDriveNames{"kinematic", "velocity"};
 
-/// The numbers are those of Habitat 2.0 (Szot et al. 2021, section 4) where it has any.
+/// Options of a dynamics world. Defaults are from Habitat 2.0 (Szot et al. 2021, section 4) if it
+/// states them.
 struct WorldOptions {
   ArmDrive arm = ArmDrive::kMotors;
   BaseDrive base = BaseDrive::kKinematic;
-  /// With BaseDrive::kVelocity: the share of the speeds' errors that is gone after each substep.
+  /// With BaseDrive::kVelocity: the share of the speed error that each substep removes.
   double base_gain = 0.3;
-  /// Share of the position's and of the speed's error that a motor takes away in each substep, and
-  /// the most impulse that it gives, N s or N m s.
+  /// Shares of the position error and the speed error that a motor removes in each substep, and its
+  /// largest impulse, N s or N m s.
   double position_gain = 0.3;
   double velocity_gain = 0.3;
   double most_impulse = 10;
-  /// Of one control step, and their length in seconds.
+  /// The number of substeps in a control step, and their length in seconds.
   std::uint32_t substeps = 4;
   double substep = 1.0 / 120;
-  /// Of every surface that has none of its own; that of a pair is the product.
+  /// Friction of every surface that has none of its own; the friction of a pair is the product.
   double friction = 0.8;
   /// Down, m/s^2.
   double gravity = 9.81;
 };
 
-/// A robot for a world.
+/// A robot to be added to a world.
 struct RobotSetup {
   /// Must outlive the world.
   const Robot& robot;
@@ -82,18 +83,18 @@ struct RobotSetup {
   std::span<const float> positions;
 };
 
-/// The world frame, meters.
+/// An object and its pose in the world frame, meters.
 struct PlacedObject {
   std::shared_ptr<const ObjectShape> shape;
   Pose world_from_object;
 };
 
-/// On the way from one pose to the other: `share` of it, 0 to 1.
+/// Interpolates between two poses: `share` of the way, 0 to 1.
 [[nodiscard]] Pose between(const Pose& from, const Pose& to, float share);
 
-/// One home with gravity: the scene does not move, objects are rigid bodies, the robot's base goes
-/// where it is told and its arm is driven. Deterministic: what it does depends on the calls only.
-/// Not safe to use from several threads; several worlds are.
+/// One home with gravity: the scene does not move, objects are rigid bodies, the robot's base is
+/// placed and its arm is driven. Deterministic: the result depends only on the calls. A world is
+/// not thread-safe, but threads may use different worlds.
 class DynamicsWorld {
  public:
   DynamicsWorld(std::shared_ptr<const SceneShape> scene, std::span<const PlacedObject> objects,
@@ -104,18 +105,18 @@ class DynamicsWorld {
   DynamicsWorld(const DynamicsWorld&) = delete;
   DynamicsWorld& operator=(const DynamicsWorld&) = delete;
 
-  /// Once at most.
+  /// At most once.
   void addRobot(const RobotSetup& setup);
 
-  /// Where the root is to be, and what the joint positions are to be, at the end of the next step.
-  /// The base gets there in equal parts; motors may take longer.
+  /// Sets the targets of the root and of the joint positions for the end of the next step. The base
+  /// gets there in equal parts; motors may take longer.
   void drive(const Pose& world_from_root, std::span<const float> positions);
   /// One control step.
   void step();
 
   [[nodiscard]] Pose worldFromRoot() const;
   [[nodiscard]] const WorldOptions& options() const;
-  /// One per position of the robot. Those of unmoved joints stay as they were given.
+  /// One per position of the robot. Joints that actions do not move keep their initial positions.
   [[nodiscard]] std::vector<float> positions() const;
   [[nodiscard]] Pose objectPose(std::size_t object) const;
   /// m/s and rad/s, world frame; about the center of mass.
@@ -123,18 +124,18 @@ class DynamicsWorld {
   /// Kinetic and potential energy of the robot's bodies, joules.
   [[nodiscard]] double robotEnergy() const;
 
-  /// The object that is nearest to the middle of the sphere, of those that touch it.
+  /// Of the objects that touch a sphere, the one nearest to its center.
   [[nodiscard]] std::optional<std::size_t> objectWithin(const Vec3& center, float radius) const;
-  /// Holds the object where it is, against the link. Nothing may be held.
+  /// Fixes the object to the link where it is. The hand must be empty.
   void grasp(std::size_t object, std::uint32_t link);
-  /// Lets go. Something must be held.
+  /// Releases the held object. Something must be held.
   void release();
   [[nodiscard]] std::optional<std::size_t> held() const;
-  /// Lets an object that is not held rest as it is until something comes near it.
+  /// Puts an object that is not held to sleep: it rests until something comes near it.
   void sleep(std::size_t object);
 
-  /// How deep the base's hulls would be in the scene with the root there, meters, and the way out
-  /// along the ground. The ground under `ground_height` does not count.
+  /// How deep the base's hulls would penetrate the scene with the root at a pose, meters, and the
+  /// direction out. Contacts with the ground under `ground_height` do not count.
   struct BaseContact {
     float depth = 0;
     Vec3 away;
@@ -148,7 +149,7 @@ class DynamicsWorld {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A link of the robot in something.
+/// A link of the robot that overlaps something.
 struct RobotContact {
   std::uint32_t link = 0;
   /// Index of an object; -1 for the scene.
@@ -157,20 +158,20 @@ struct RobotContact {
   float depth = 0;
   /// World frame.
   Vec3 point;
-  /// Unit vector out of the thing, world frame.
+  /// Unit vector pointing out of the thing, world frame.
   Vec3 away;
   /// The point of the robot that is deepest in the thing, world frame.
   Vec3 on_robot;
 };
 
-/// Whether a contact is with the ground, which carries the base and does not stop it: low (`point`
-/// is under `height`) and from below.
+/// Whether a contact is with the ground, which carries the base and does not stop it: it is low
+/// (`point` is under `height`) and comes from below.
 [[nodiscard]] constexpr bool isGround(const Vec3& point, const Vec3& away, float height) {
   constexpr float kSteepest = 0.7F;
   return point.y < height && away.y > kSteepest;
 }
 
-/// Says what a robot would touch in a pose that may be anything: geometry, without motion.
+/// Finds what a robot would touch in any pose: pure geometry, without motion.
 class ContactProbe {
  public:
   ContactProbe(std::shared_ptr<const SceneShape> scene, std::span<const PlacedObject> objects,
@@ -182,8 +183,8 @@ class ContactProbe {
   ContactProbe& operator=(const ContactProbe&) = delete;
 
   void moveObject(std::size_t object, const Pose& world_from_object);
-  /// The deepest contact of each pair of a link and a thing that overlap, by link, then by thing.
-  /// `ignored`: an object that does not count, as one that is held.
+  /// The deepest contact of each overlapping pair of a link and a thing, ordered by link, then by
+  /// thing. `ignored`: an object that does not count, such as a held one.
   [[nodiscard]] std::vector<RobotContact> contacts(const Pose& world_from_root,
                                                    std::span<const float> positions,
                                                    std::optional<std::size_t> ignored) const;

@@ -34,12 +34,12 @@ std::vector<std::string> longNamesOf(const CLI::App& app) {
   return names;
 }
 
-/// Makes options of the parser of those that visitOptions() names; the fields must outlive it.
+/// Adds the options that visitOptions() lists to the parser; the fields must outlive it.
 class Registrar {
  public:
   explicit Registrar(CLI::App& app) : app_(app) {}
 
-  /// One of some words.
+  /// An option whose value is one of several words.
   template <class T, std::size_t N>
   void choice(const char* name, T& field, const std::array<std::string_view, N>& names,
               const char* help) {
@@ -141,7 +141,7 @@ void addOutputs(CLI::App& app, Command& command) {
   app.add_flag("-q,--quiet", command.is_quiet, "Only errors")->check(switchCheck());
 }
 
-/// What no single option can see to be wrong; empty when nothing is.
+/// What is wrong with the combination of options; empty if nothing is.
 std::string faultOf(const CLI::App& app, const Command& command) {
   if (command.recording.empty() == command.policy.empty()) {
     return "give either --recording, to replay it, or --policy, to close the loop";

@@ -11,12 +11,13 @@
 
 namespace galactic::dynamics {
 
-/// What galactic-dynamics is asked to do.
+/// The parsed command line of galactic-dynamics.
 struct Command {
   std::filesystem::path recipe;
   std::vector<std::filesystem::path> packs;
   std::filesystem::path data;
-  /// One of the two: what is replayed, or whose actions close the loop ("scripted" or a pack).
+  /// Exactly one of these is set: the recording to replay, or the policy that closes the loop
+  /// ("scripted" or a pack).
   std::filesystem::path recording;
   std::string policy;
   LoopOptions loop;
@@ -35,8 +36,8 @@ struct Command {
   [[nodiscard]] std::filesystem::path policyFile() const;
 };
 
-/// Reads the command line into `command`. Returns the exit code where there is nothing to do: help,
-/// version, a mistake.
+/// Reads the command line into `command`. Returns the exit code if there is nothing more to do:
+/// after help, version or a mistake.
 [[nodiscard]] std::optional<int> parseCommandLine(int argc, const char* const* argv,
                                                   Command& command);
 

@@ -19,7 +19,7 @@
 namespace galactic::dynamics {
 namespace {
 
-/// How far it is, on a terminal.
+/// Shows the progress on a terminal.
 class Progress {
  public:
   Progress(std::size_t done, std::size_t all, bool is_quiet)
@@ -45,7 +45,7 @@ class Progress {
   std::mutex mutex_;
 };
 
-/// Lanes that threads take and give back.
+/// A pool of lanes for threads.
 class LanePool {
  public:
   static Result<std::unique_ptr<LanePool>> create(const EpisodeSource& episodes,
@@ -92,7 +92,7 @@ Result<std::vector<EpisodeComparison>> compareAll(const EpisodeSource& episodes,
   const std::size_t threads = std::min(wanted, open.size());
   ASSIGN_OR_RETURN(const auto lanes, LanePool::create(episodes, threads));
   Progress progress(results.size() - open.size(), results.size(), command.is_quiet);
-  // What cannot be kept is not worth the time.
+  // After an I/O error, stop: further results could not be kept either.
   std::atomic<bool> is_lost = false;
   bake::parallelFor(static_cast<unsigned>(threads), open.size(), [&](std::size_t k) {
     if (stop.came() || is_lost) return;

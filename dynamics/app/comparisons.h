@@ -10,9 +10,10 @@
 
 namespace galactic::dynamics {
 
-/// Compares all episodes. `journal`: keeps what is done; null: nobody does. The result does not
-/// depend on the number of threads. When `stop` came it finishes what has begun, and returns fewer
-/// than episodes.count(). Fails with the errors of compareEpisode, of the first episode that fails.
+/// Compares all episodes. `journal`: keeps finished episodes; may be null. The result does not
+/// depend on the number of threads. After a stop request, it finishes the episodes that have begun,
+/// and returns fewer than episodes.count(). Fails with the error of compareEpisode for the first
+/// episode that fails.
 [[nodiscard]] Result<std::vector<EpisodeComparison>> compareAll(const EpisodeSource& episodes,
                                                                 const ComparisonWorlds& worlds,
                                                                 const Command& command,

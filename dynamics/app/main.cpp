@@ -1,4 +1,4 @@
-// galactic-dynamics: plays episodes of the simulation where things have mass.
+// galactic-dynamics: plays episodes of the simulation in a world where things have mass.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -34,7 +34,7 @@
 namespace galactic::dynamics {
 namespace {
 
-/// The recipe's reader names its one option in backquotes, as a library does.
+/// Turns the option that the recipe's reader, being a library, names in backquotes into a flag.
 std::string withFlags(std::string message) {
   constexpr std::string_view kName = "`data`";
   const std::size_t at = message.find(kName);
@@ -48,13 +48,13 @@ int refuse(const Error& error) {
   return static_cast<int>(error.code);
 }
 
-/// What is done, beside the report.
+/// The journal of finished episodes, beside the report.
 std::filesystem::path journalFile(const Command& command) {
   return command.report.string() + ".partial";
 }
 
-/// Before the work: what will be written must not replace what is read, the packs that the world
-/// lists among it, nor each other, and it must be possible to write it.
+/// Checks, before the work, that outputs can be written, and that they replace neither inputs,
+/// including the packs that the world lists, nor each other.
 Result<void> tryOutputs(const Command& command, const World& world, const bake::ReadLog& sources) {
   std::vector<std::filesystem::path> inputs(command.packs.begin(), command.packs.end());
   for (const PackFile& pack : world.packs()) inputs.emplace_back(pack.where());
@@ -75,7 +75,7 @@ Result<void> tryOutputs(const Command& command, const World& world, const bake::
   return {};
 }
 
-/// Notes what the file at `path` holds, by a name that does not tell where it lies.
+/// Records the content of the file at `path` under a name that does not depend on its folder.
 Result<void> noteContent(const std::filesystem::path& path, std::string name, bake::ReadLog& read) {
   ASSIGN_OR_RETURN(auto file, bake::describeFile(path));
   file.name = std::move(name);
@@ -90,9 +90,9 @@ Result<std::unique_ptr<EpisodeSource>> openEpisodes(const Command& command, cons
   return playedEpisodes(command.policyFile(), command.loop, world, command.episodes);
 }
 
-/// None where no report is wanted. What it is kept of is all that decides the comparisons: the
-/// options, the content of what was read besides the packs, and this program, another build of
-/// which may play otherwise.
+/// The journal; none if no report is wanted. Its subject is everything that affects the
+/// comparisons: the options, the content of the files that were read besides the packs, and this
+/// program, since another build may play differently.
 Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
                                                      const EpisodeSource& episodes,
                                                      const World& world,
@@ -121,14 +121,14 @@ Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
 Result<void> showBoth(const SideBySideParts& parts, const SideBySideFiles& files) {
   if (files.view.empty() && files.pictures.empty()) return {};
   ASSIGN_OR_RETURN(const auto notes, writeSideBySide(parts, files));
-  // Also for those who want errors only: they may take an older file for that of this run.
+  // Printed even with --quiet: the user could take an older file for that of this run.
   for (const std::string& one : notes) {
     printToStderr(fmt::format("galactic-dynamics: {}\n", printable(one)));
   }
   return {};
 }
 
-/// Says how to go on.
+/// Prints how to continue.
 int endInterrupted(const Command& command, std::size_t done, std::size_t all) {
   const std::string advice = command.report.empty() ? "--report FILE.json would keep what is done"
                                                     : "start it again to go on from there";
@@ -137,7 +137,7 @@ int endInterrupted(const Command& command, std::size_t done, std::size_t all) {
   return kExitInterrupted;
 }
 
-/// The exit code.
+/// Does the work; returns the exit code.
 Result<int> run(const Command& command) {
   const StopRequest stop("galactic-dynamics");
   ASSIGN_OR_RETURN(const auto world, World::open(command.packs));
@@ -145,7 +145,7 @@ Result<int> run(const Command& command) {
                    readSources({.recipe = command.recipe, .data = command.data}, world));
   RETURN_IF_ERROR(tryOutputs(command, world, sources.log));
   ASSIGN_OR_RETURN(const auto episodes, openEpisodes(command, world));
-  // The report holds all of them.
+  // The report lists all warnings.
   for (const std::string& warning : oneOfEachKind(sources.warnings, "--report lists them")) {
     if (command.is_quiet) break;
     printToStderr(fmt::format("galactic-dynamics: warning: {}\n", printable(warning)));

@@ -82,7 +82,7 @@ class ContactProbe::Impl {
   }
 
  private:
-  /// A body of the robot, which is in no world.
+  /// A body of the robot, which is not in a world.
   struct Ghost {
     std::uint32_t link = 0;
     std::unique_ptr<btCompoundShape> compound;
@@ -94,7 +94,7 @@ class ContactProbe::Impl {
     object.setCollisionShape(shape);
     object.setWorldTransform(at);
     object.setUserIndex(bit == kSceneBit ? -1 : static_cast<int>(objects_.size()) - 1);
-    // Nothing meets anything but by questions.
+    // Objects collide with nothing; contacts are found only by queries.
     world_.addCollisionObject(&object, bit, 0);
   }
 

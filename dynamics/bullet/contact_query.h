@@ -1,5 +1,5 @@
 #pragma once
-// For the files that name Bullet alone.
+// Only for the files that use Bullet.
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 
@@ -7,17 +7,17 @@
 
 namespace galactic::dynamics {
 
-/// One point in which a queried object meets another.
+/// One point at which a queried object touches another.
 struct QueryContact {
   const btCollisionObject* other = nullptr;
-  /// Of the queried object's compound.
+  /// Index of the child in the queried object's compound.
   int child = 0;
   /// Meters, > 0 where they overlap.
   btScalar depth = 0;
   btVector3 point;
-  /// Out of the other.
+  /// Unit vector pointing out of the other object.
   btVector3 away;
-  /// The point of the queried object that is deepest in the other.
+  /// The deepest point of the queried object in the other.
   btVector3 on_object;
 };
 

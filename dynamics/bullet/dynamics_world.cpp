@@ -19,11 +19,11 @@ namespace {
 /// Slower objects may fall asleep, m/s and rad/s.
 constexpr btScalar kSleepSpeed = 0.05F;
 constexpr btScalar kSleepTurn = 0.1F;
-/// Holds what is nearly round, as the carpet or the dent of a real apple does.
+/// Keeps round objects from rolling away, like a carpet, or the dents of a real apple.
 constexpr btScalar kRollingFriction = 0.002F;
 
-/// Of the solver in each substep: PyBullet's. With Bullet's own 10 a box slides half as far down a
-/// slope as it should.
+/// Iterations of the solver in each substep, as in PyBullet. With Bullet's default of 10, a box
+/// slides half as far down a slope as it should.
 constexpr int kIterations = 50;
 
 /// Pools of one home; Bullet's defaults are megabytes.
@@ -47,9 +47,9 @@ std::unique_ptr<btRigidBody> makeBody(const PlacedObject& object, const WorldOpt
   return std::make_unique<btRigidBody>(info);
 }
 
-/// How far a point is from the hulls of a compound, 0 inside. Bullet's own question, the contacts
-/// of a sphere, is off by up to 10 mm: what it says of shapes that are apart, as a sphere's middle
-/// and a hull are, is a bound.
+/// The distance of a point from the hulls of a compound, 0 inside. Bullet's contact query with a
+/// sphere would be off by up to 10 mm: for shapes that are apart, such as a sphere's center and a
+/// hull, it returns only a bound.
 btScalar distanceTo(const btCompoundShape& hulls, const btTransform& world_from_hulls,
                     const btVector3& point) {
   const btSphereShape sphere(1e-3F);
@@ -59,7 +59,7 @@ btScalar distanceTo(const btCompoundShape& hulls, const btTransform& world_from_
     const auto* hull = static_cast<const btConvexShape*>(hulls.getChildShape(n));
     const btTransform there = world_from_hulls * hulls.getChildTransform(n);
     btGjkEpaSolver2::sResults result;
-    // Without margins: from the sphere's middle.
+    // Without margins, so from the center of the sphere.
     const bool is_apart =
         btGjkEpaSolver2::Distance(hull, there, &sphere, at, there.getOrigin() - point, result);
     least = std::min(least, is_apart ? result.distance : 0);
@@ -217,7 +217,7 @@ class DynamicsWorld::Impl {
     return between(from, wanted_root_,
                    static_cast<float>(n) / static_cast<float>(options_.substeps));
   }
-  /// Motors are told at once where to go.
+  /// Motors get their final target in the first substep.
   [[nodiscard]] std::vector<float> targetsAfter(std::span<const float> before,
                                                 std::uint32_t n) const {
     if (options_.arm == ArmDrive::kMotors || n == options_.substeps) return wanted_;
@@ -236,7 +236,7 @@ class DynamicsWorld::Impl {
     world_.refreshBroadphaseProxy(objects_[object].get());
   }
 
-  /// What the hand let go of meets the robot again when it has left it.
+  /// Released objects collide with the robot again when they no longer overlap it.
   void meetAgain() {
     std::erase_if(leaving_, [this](std::size_t object) {
       bool overlaps = false;
@@ -260,7 +260,7 @@ class DynamicsWorld::Impl {
   std::vector<std::unique_ptr<btRigidBody>> objects_;
   std::unique_ptr<Rig> rig_;
   std::vector<std::size_t> body_of_link_;
-  /// For questions about the base; not in the world.
+  /// For queries about the base; not in the world.
   std::unique_ptr<btCompoundShape> base_shape_;
   btCollisionObject base_;
   Pose world_from_root_;
@@ -268,7 +268,7 @@ class DynamicsWorld::Impl {
   std::vector<float> positions_;
   std::vector<float> wanted_;
   std::optional<std::size_t> held_;
-  /// Objects that the hand let go of and that overlap the robot since.
+  /// Released objects that still overlap the robot.
   std::vector<std::size_t> leaving_;
 };
 

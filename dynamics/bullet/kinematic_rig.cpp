@@ -42,7 +42,7 @@ class KinematicRig final : public Rig {
   void drive(const Pose& world_from_root, std::span<const float> positions) override {
     std::ranges::copy(positions, positions_.begin());
     forwardKinematics(robot_.links(), world_from_root, positions_, world_from_link_);
-    // Bullet takes their speeds from how far they went.
+    // Bullet computes the bodies' speeds from how far they moved.
     for (std::size_t n = 0; n < bodies_.size(); ++n) {
       bodies_[n]->setWorldTransform(toBullet(world_from_link_[links_[n]]));
     }

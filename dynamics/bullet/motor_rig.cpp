@@ -10,7 +10,7 @@
 namespace galactic::dynamics {
 namespace {
 
-/// Of the constraint that holds an object, N s: that of Habitat 2.0.
+/// The largest impulse of the constraint that holds an object, N s, as in Habitat 2.0.
 constexpr btScalar kMostHoldImpulse = 1000;
 
 class MotorRig final : public Rig {
@@ -103,8 +103,8 @@ class MotorRig final : public Rig {
   }
 
  private:
-  /// The base has no speed, so the constraint would notice too late that it has moved: what is held
-  /// goes with it, as in Habitat 2.0.
+  /// Moves the held object with the base, as in Habitat 2.0: the base has no speed, so the
+  /// constraint would react to its motion too late.
   void carry(const btTransform& way) {
     const btTransform there = way * held_->getWorldTransform();
     held_->setWorldTransform(there);
@@ -147,7 +147,7 @@ class MotorRig final : public Rig {
     collider->setActivationState(DISABLE_DEACTIVATION);
     collider->setWorldTransform(link < 0 ? body_->getBaseWorldTransform()
                                          : body_->getLink(link).m_cachedWorldTransform);
-    // The scene cannot stop the base: that is for who drives it.
+    // The scene does not stop the base: its driver does.
     world_.addCollisionObject(collider.get(), kRobotBit,
                               n == 0 ? kObjectBit : kObjectBit | kSceneBit);
     if (link < 0) {
@@ -169,7 +169,7 @@ class MotorRig final : public Rig {
     motors_.push_back(std::move(motor));
   }
 
-  /// What the joint of jointed body `n` is to be.
+  /// The target for the joint of jointed body `n`.
   [[nodiscard]] btScalar valueOf(std::size_t n, std::span<const float> positions) const {
     const LinkFrame& frame = robot_.links()[links_[n + 1]];
     return frame.multiplier * positions[static_cast<std::size_t>(frame.position)] + frame.offset;

@@ -1,5 +1,5 @@
 #pragma once
-// For the files that name Bullet alone.
+// Only for the files that use Bullet.
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace galactic::dynamics {
 
-/// What collides with what, as bits.
+/// Collision groups, as bits.
 enum CollisionBit : int { kSceneBit = 1, kObjectBit = 2, kRobotBit = 4, kHeldBit = 8 };
 
-/// The robot in a Bullet world: how it follows where it is told to be.
+/// The robot in a Bullet world, and how it follows its targets.
 class Rig {
  public:
   Rig() = default;
@@ -24,9 +24,9 @@ class Rig {
   Rig(Rig&&) = delete;
   Rig& operator=(Rig&&) = delete;
 
-  /// Where base and joints are to be at the end of the next substep.
+  /// Sets the targets of base and joints for the end of the next substep.
   virtual void drive(const Pose& world_from_root, std::span<const float> positions) = 0;
-  /// The positions of all joints now.
+  /// Reads the current positions of all joints.
   virtual void read(std::span<float> positions) const = 0;
   [[nodiscard]] virtual double energy(const btVector3& gravity) const = 0;
 
@@ -34,11 +34,11 @@ class Rig {
   virtual void letGo() = 0;
 };
 
-/// The setup's bodies hang from each other by joints that motors drive.
+/// The setup's bodies are connected by joints that motors drive.
 [[nodiscard]] std::unique_ptr<Rig> makeMotorRig(btMultiBodyDynamicsWorld& world,
                                                 const RobotSetup& setup,
                                                 const WorldOptions& options);
-/// Each body goes where forward kinematics has it, whatever is in the way.
+/// Each body goes where forward kinematics puts it, whatever is in the way.
 [[nodiscard]] std::unique_ptr<Rig> makeKinematicRig(btMultiBodyDynamicsWorld& world,
                                                     const RobotSetup& setup,
                                                     const WorldOptions& options);

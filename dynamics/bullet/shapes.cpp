@@ -32,7 +32,7 @@ class SolidSum {
     }
   }
 
-  /// Of this mass, spread evenly.
+  /// The inertia of a mass that is spread evenly.
   [[nodiscard]] Inertia inertia(double mass) const {
     Inertia result{.mass = mass, .center = {}, .moments = {}};
     const double density = mass / volume_;
@@ -82,7 +82,7 @@ void addSolid(const HullPoints& points, SolidSum& sum) {
   }
 }
 
-/// Of the box around the points: they fill no volume.
+/// The inertia of the box around the points, for points that enclose no volume.
 Inertia inertiaOfBox(const ObjectSource& source) {
   Vec3 least = source.hulls.front().front();
   Vec3 most = least;
@@ -112,10 +112,10 @@ Inertia inertiaOf(const ObjectSource& source) {
   return sum.volume() > kNoVolume ? sum.inertia(source.mass) : inertiaOfBox(source);
 }
 
-/// A hull may lose this much of its extent in any direction, meters; contacts cost time in
-/// proportion to its corners.
+/// A hull may lose this much of its extent in any direction, meters, as the cost of contacts is
+/// proportional to its corners.
 constexpr btScalar kRounding = 5e-4F;
-/// Directions in which that is looked at, spread evenly (on a golden spiral).
+/// The number of directions in which that is checked, spread evenly (on a golden spiral).
 constexpr int kDirections = 1000;
 
 btVector3 directionOf(int n) {
@@ -127,8 +127,8 @@ btVector3 directionOf(int n) {
           static_cast<btScalar>(around * std::sin(angle)), static_cast<btScalar>(z)};
 }
 
-/// Corners of `hull` whose own hull is as far as it in all of the directions, but for kRounding:
-/// one by one that which is missed most. In the order of the hull's.
+/// Corners of `hull` whose own hull has the same extent in all of the directions, to within
+/// kRounding. Adds the corner that is missed most, one by one. In the order of the hull's corners.
 std::vector<int> cornersThatMatter(const btConvexHullComputer& hull) {
   struct Direction {
     btVector3 way;
@@ -147,8 +147,8 @@ std::vector<int> cornersThatMatter(const btConvexHullComputer& hull) {
   const auto missed = [](const Direction& a, const Direction& b) {
     return a.far - a.reached < b.far - b.reached;
   };
-  // Each round keeps another corner; but where the sums of huge coordinates overflow, what is
-  // missed is no number, and never small.
+  // Each round adds a corner. The limit is needed where sums of huge coordinates overflow: then the
+  // missed distance is NaN and never small.
   while (kept.size() < static_cast<std::size_t>(hull.vertices.size())) {
     const Direction most = *std::ranges::max_element(directions, missed);
     if (most.far - most.reached <= kRounding) break;
@@ -170,7 +170,7 @@ std::unique_ptr<btConvexHullShape> makeHull(const HullPoints& points) {
   for (const int n : cornersThatMatter(corners)) hull->addPoint(corners.vertices[n], false);
   hull->recalcLocalAabb();
   hull->setMargin(0);
-  // Contacts of whole faces at once, not one corner per step.
+  // Finds contacts of whole faces at once, not one corner per step.
   hull->initializePolyhedralFeatures();
   return hull;
 }

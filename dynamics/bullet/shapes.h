@@ -1,5 +1,5 @@
 #pragma once
-// For the files that name Bullet alone.
+// Only for the files that use Bullet.
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 
@@ -30,19 +30,20 @@ class SceneShape : public bake::BulletMesh {
   using BulletMesh::BulletMesh;
 };
 
-/// The hull of `points`, without margin and without corners that make half a millimeter or less.
+/// The hull of `points`, without margin, and without corners that change it by at most half a
+/// millimeter.
 [[nodiscard]] std::unique_ptr<btConvexHullShape> makeHull(const HullPoints& points);
 
 /// A mass in Bullet's terms: about the center of mass, along the principal axes.
 struct PrincipalInertia {
   btScalar mass = 0;
   btVector3 moments{0, 0, 0};
-  /// Of the center of mass and the principal axes.
+  /// The frame of the center of mass and the principal axes.
   btTransform body_from_inertia;
 };
 [[nodiscard]] PrincipalInertia principalInertia(const Inertia& inertia);
 
-/// In the frame of its center of mass and principal axes.
+/// The shape of an object in the frame of its center of mass and principal axes.
 class ObjectShape {
  public:
   explicit ObjectShape(const ObjectSource& source);
@@ -60,7 +61,8 @@ class ObjectShape {
 class RobotShape {
  public:
   explicit RobotShape(const RobotParts& parts);
-  /// The hulls of a body in the frame `body_from_frame`; linksOfChildren() tells their links.
+  /// The hulls of a body in the frame `body_from_frame`. linksOfChildren() returns the links to
+  /// which they belong.
   [[nodiscard]] std::unique_ptr<btCompoundShape> compound(const RobotBody& body,
                                                           const btTransform& body_from_frame) const;
   [[nodiscard]] std::vector<std::uint32_t> linksOfChildren(const RobotBody& body) const;

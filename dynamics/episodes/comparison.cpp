@@ -11,9 +11,9 @@
 namespace galactic::dynamics {
 namespace {
 
-/// Control steps of two seconds.
+/// The number of control steps in two seconds.
 constexpr int kRestSteps = 60;
-/// Of an episode that no task ends.
+/// The length of an episode that the task does not end.
 constexpr std::size_t kMostPolicySteps = 10'000;
 
 float lengthOf(const Vec3& v) { return std::sqrt(dot(v, v)); }
@@ -32,14 +32,14 @@ std::vector<PlacedObject> placed(const EpisodeTrace& trace, const ComparisonWorl
   return objects;
 }
 
-/// Whether the engine knows where something is: what is pressed into other things may get lost.
+/// Whether a pose is finite: the engine may lose bodies that are pressed into others.
 bool isKnown(const Pose& pose) {
   const auto& [x, y, z] = pose.translation;
   const auto& [i, j, k, w] = pose.rotation;
   return std::isfinite(x + y + z + i + j + k + w);
 }
 
-/// Whether it knows where everything is.
+/// Whether all poses are finite.
 bool isAllKnown(const FollowedState& state) {
   const auto is_known = [](const Pose& pose) { return isKnown(pose); };
   return isKnown(state.world_from_root) && std::ranges::all_of(state.objects, is_known) &&
@@ -92,7 +92,7 @@ class Comparison {
       const DrivenStep driven = driver.step(actions);
       if (driven.grasped) was_held_[*driven.grasped] = true;
       const FollowedState now = reading.read(dynamics, driven, objects_.size());
-      // Nothing can follow from that: the episode ends without a success.
+      // The simulation cannot follow such a state: the episode ends without success.
       if (!isAllKnown(now)) break;
       lane_.follow(actions, now);
       if (watch) watch(lane_.simulator(), actions);
@@ -123,7 +123,7 @@ class Comparison {
     }
   }
 
-  /// How the episode ended, and what is left of that two seconds later.
+  /// Records how the episode ended, and the state two seconds later.
   void finish(DynamicsWorld& dynamics) {
     result_.end_in_dynamics = lane_.end();
     result_.picked_in_dynamics = was_held_[trace_.target];
@@ -132,7 +132,7 @@ class Comparison {
     for (std::size_t n = 0; n < objects_.size(); ++n) {
       const Vec3 way =
           dynamics.objectPose(n).translation - objects_[n].world_from_object.translation;
-      // Not within it where the engine lost it, either.
+      // Written so that it is also true for NaN, if the engine lost the object.
       if (!was_held_[n] && !(lengthOf(way) <= kDisturbed)) ++result_.disturbed;
     }
   }
@@ -145,8 +145,8 @@ class Comparison {
     return !holds && lengthOf(away) < task.success_distance;
   }
 
-  /// Lets each released object go where the simulation put it, among the others and without the
-  /// robot. One that the engine loses is where it was known last.
+  /// Releases each object where the simulation put it, among the others and without the robot, and
+  /// waits. An object that the engine loses keeps its last known pose.
   void restAll() {
     std::vector<PlacedObject> objects = objects_;
     for (const TracedRelease& release : trace_.releases) {

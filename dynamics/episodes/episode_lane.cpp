@@ -10,7 +10,7 @@
 namespace galactic::dynamics {
 namespace {
 
-/// One env that stays where an episode ends.
+/// Options for one env that stays at the end of its episode.
 SimulationOptions laneOptions(SimulationOptions options) {
   options.envs = 1;
   options.threads = 1;
@@ -42,7 +42,7 @@ Result<std::unique_ptr<EpisodeLane>> EpisodeLane::create(const World& world,
                                                          const std::optional<ClosedLoop>& loop) {
   const SimulationOptions own = laneOptions(options);
   ASSIGN_OR_RETURN(auto simulator, BatchSimulator::create(world, own));
-  // What the policies look at must not move.
+  // Policies keep references into the lane, so it must not move.
   std::unique_ptr<EpisodeLane> lane(new EpisodeLane(std::move(simulator)));
   if (loop && loop->learned != nullptr) {
     RunOptions run;

@@ -24,28 +24,28 @@ struct ClosedLoop {
   bool is_deterministic = false;
 };
 
-/// One env of the simulation, which plays one episode after the other, or follows a dynamics world:
-/// then it says what a policy observes in it and how the task ends. What happens in an episode
-/// depends on (world, options, episode) only, not on those before. Not safe to use from several
-/// threads at once; stays in one place.
+/// One env of the simulation, which plays one episode after the other, or follows a dynamics world
+/// to provide a policy's observations in it and the end of the task. An episode depends only on
+/// (world, options, episode), not on previous episodes. Not thread-safe, and not movable.
 class EpisodeLane {
  public:
-  /// `world` must outlive it. Of `options`, the task and the seed count. `loop`: none where actions
-  /// are given. Fails with the errors of BatchSimulator::create and of the policies.
+  /// `world` must outlive the lane. Only the task and the seed of `options` are used. `loop`: none
+  /// if actions are given from outside. Fails with the errors of BatchSimulator::create and of the
+  /// policies.
   [[nodiscard]] static Result<std::unique_ptr<EpisodeLane>> create(
       const World& world, const SimulationOptions& options, const std::optional<ClosedLoop>& loop);
 
-  /// Stands at the start of an episode (index into the world's episodes), one that can be started.
-  /// `arm`: what will move the joints.
+  /// Begins an episode (index into the world's episodes) in which the robot can start. `arm`: what
+  /// will move the joints.
   void begin(std::uint32_t episode, ArmDrive arm);
 
-  /// What the policy does next. Fails as the policy does.
+  /// The next actions of the policy. Fails as the policy does.
   [[nodiscard]] Result<std::span<const float>> act();
 
   /// One step of the simulation.
   void step(std::span<const float> actions);
 
-  /// The step that was made where `state` is from.
+  /// Follows a step of another world, with these actions, that led to `state`.
   void follow(std::span<const float> actions, const FollowedState& state);
 
   [[nodiscard]] const BatchSimulator& simulator() const { return simulator_; }
@@ -62,10 +62,11 @@ class EpisodeLane {
   std::uint64_t steps_ = 0;
 };
 
-/// The dynamics world after a step, in the simulation's terms. Keeps what the result looks at.
+/// Reads the state of a dynamics world after a step in the simulation's terms. Owns the memory to
+/// which the result refers.
 class WorldReading {
  public:
-  /// `objects`: how many the env has.
+  /// `objects`: the number of objects in the env.
   [[nodiscard]] FollowedState read(const DynamicsWorld& world, const DrivenStep& driven,
                                    std::size_t objects);
 

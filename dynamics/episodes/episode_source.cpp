@@ -20,7 +20,8 @@
 namespace galactic::dynamics {
 namespace {
 
-/// What moves things in the dynamics is off by itself; noise of motion would be lost, and delay.
+/// Rejects noise and delay of motions: the dynamics have their own inexactness, and would not apply
+/// these.
 Result<void> requireExactMotions(const SimulationOptions& options, const std::string& where,
                                  const std::string& remedy) {
   const RobotNoise& noise = options.noise;
@@ -58,7 +59,7 @@ class RecordedEpisodes final : public EpisodeSource {
   std::vector<EpisodeTrace> traces_;
 };
 
-/// Who plays: a pack's policy, or the scripted one where there is none.
+/// The policy that plays: that of a pack, or else the scripted one.
 struct Player {
   std::optional<OpenedPolicy> policy;
   bool is_deterministic = false;
@@ -116,7 +117,7 @@ Result<SimulationOptions> optionsOf(const Player& player, const LoopOptions& loo
   return options;
 }
 
-/// The first `most` that can be started; 0: all.
+/// The first `most` episodes in which the robot can start; 0: all.
 Result<std::vector<std::uint32_t>> startableEpisodes(const World& world,
                                                      const SimulationOptions& options,
                                                      const Player& player, std::size_t most) {

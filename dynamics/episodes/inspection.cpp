@@ -11,9 +11,9 @@
 namespace galactic::dynamics {
 namespace {
 
-/// A contact of less says nothing about what hindered a motion, meters.
+/// Shallower contacts do not explain what hindered a motion, meters.
 constexpr float kTouch = 0.001F;
-/// Whoever moves less cannot pass through anything on the way, meters.
+/// A robot that moves less than this cannot pass through anything on the way, meters.
 constexpr float kPasses = 2 * kTolerance;
 
 float distanceOf(const Vec3& a, const Vec3& b) {
@@ -21,7 +21,7 @@ float distanceOf(const Vec3& a, const Vec3& b) {
   return std::sqrt(dot(way, way));
 }
 
-/// How far `point` is outside of all spheres of the robot; below 0 inside. Meters.
+/// The distance of `point` from the nearest sphere of the robot, meters; negative inside.
 float outsideSpheres(const Robot& robot, std::span<const Pose> world_from_link, const Vec3& point) {
   float least = std::numeric_limits<float>::max();
   for (const SphereGroup& group : robot.groups()) {
@@ -34,8 +34,8 @@ float outsideSpheres(const Robot& robot, std::span<const Pose> world_from_link, 
   return least;
 }
 
-/// Positions half way to others. The simulation keeps the angle of a continuous joint within a
-/// turn: such a joint goes the shorter way around.
+/// Positions halfway between two others. The simulation keeps the angle of a continuous joint
+/// within one turn, so such a joint goes the shorter way around.
 std::vector<float> halfWay(const Robot& robot, std::span<const float> from,
                            std::span<const float> to) {
   std::vector<float> ways(from.size());
@@ -150,7 +150,7 @@ void Inspection::judgeMissed(std::size_t step, EpisodeComparison& result) {
   touched_before_ = !missed.empty();
 }
 
-/// Half way between the poses before and after the step.
+/// Checks the pose halfway between those before and after the step.
 void Inspection::judgeBetween(std::size_t step, EpisodeComparison& result) {
   const Robot& robot = world_.robot();
   const TracedStep& now = trace_.steps[step];
@@ -176,12 +176,13 @@ void Inspection::judgeBetween(std::size_t step, EpisodeComparison& result) {
   if (!missed.empty()) ++result.missed_steps;
 }
 
-/// Without what sticks out of the spheres, would there still be a contact?
+/// The cause is a sphere gap if the contact vanishes without the part of the link that protrudes
+/// from its spheres.
 MissCause Inspection::causeOf(const RobotContact& contact, const RobotPose& pose) {
   forwardKinematics(world_.robot().links(), pose.world_from_root, pose.positions, world_from_link_);
   const float out = outsideSpheres(world_.robot(), world_from_link_, contact.on_robot);
   if (out > 0 && contact.depth - out <= kTolerance) return MissCause::kSphereGap;
-  // The box of an object is around all of it: a sphere in there was let in.
+  // An object's box encloses all of it, so a sphere inside must have been ignored.
   return contact.object < 0 ? MissCause::kColumnCell : MissCause::kLeaving;
 }
 

@@ -13,10 +13,10 @@
 
 namespace galactic::dynamics {
 
-/// Looks at what the simulation says about contacts, step by step, with triangles and hulls.
+/// Checks the contacts in the simulation, step by step, against triangles and hulls.
 class Inspection {
  public:
-  /// All must outlive it. `setup`, `objects`: as the episode begins.
+  /// All arguments must outlive the object. `setup`, `objects`: at the start of the episode.
   Inspection(const EpisodeTrace& trace, const World& world, const SimulationOptions& simulation,
              std::shared_ptr<const SceneShape> scene, std::span<const PlacedObject> objects,
              const RobotSetup& setup);
@@ -47,7 +47,7 @@ class Inspection {
   ContactProbe probe_;
   PlanningScene planning_;
   std::vector<Pose> world_from_link_;
-  /// An object that the hand let go of and has not left.
+  /// An object that the hand has released but not left yet.
   std::optional<std::size_t> leaving_;
   /// Whether the pose before the step touches something.
   bool touched_before_ = false;

@@ -8,7 +8,7 @@ namespace {
 
 float clamped(float action) { return std::isnan(action) ? 0.0F : std::clamp(action, -1.0F, 1.0F); }
 
-/// What the actions ask of the base.
+/// The motion of the base that the actions ask for.
 BaseMotion baseMotionOf(const Robot& robot, std::span<const float> actions) {
   const RobotBase& base = *robot.base();
   const ActionLayout layout = ActionLayout::of(robot);
@@ -27,7 +27,8 @@ void moveBase(const BaseMotion& motion, Pose& world_from_root) {
                                 rotate(world_from_root.rotation, {motion.forward, 0, -motion.left});
 }
 
-/// Out of what was met along the ground, as far as it is deep; zero where that leads nowhere.
+/// The motion along the ground that ends a contact; its length is the depth of the contact. Zero if
+/// the way out is not along the ground.
 Vec3 pushOut(const DynamicsWorld::BaseContact& contact) {
   const float length = std::hypot(contact.away.x, contact.away.z);
   constexpr float kNoDirection = 1e-6F;

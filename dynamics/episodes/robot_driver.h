@@ -11,19 +11,19 @@
 
 namespace galactic::dynamics {
 
-/// An overlap that is not counted as one: models of surfaces differ by this, meters.
+/// Smaller overlaps do not count, as models of surfaces differ by about this much; meters.
 inline constexpr float kTolerance = 0.01F;
 
 /// What a step did in the dynamics world.
 struct DrivenStep {
-  /// The base stayed where it was: there was no floor, or no way out of what it met.
+  /// The base did not move, because there was no floor, or no way out of a contact.
   bool base_refused = false;
   std::optional<std::size_t> grasped;
   std::optional<std::size_t> released;
 };
 
-/// How a base moves: along its heading, clockwise seen from above, and to its left; meters and
-/// radians, or these by the second.
+/// How a base moves: along its heading, clockwise as seen from above, and to its left; meters and
+/// radians, or these per second.
 struct BaseMotion {
   float forward = 0;
   float turn = 0;
@@ -32,27 +32,28 @@ struct BaseMotion {
 
 /// Carries out the simulation's actions in a dynamics world.
 ///
-/// The base drives and turns as in the simulation, kinematically, or its speeds follow those that
-/// the actions ask for (BaseDrive): it follows the floor under it, and where its hulls would be
-/// deeper than kTolerance in the scene it is pushed out along the ground, up to
-/// SlideOptions::attempts times, or stays. Each joint action moves the target of its joint by its
-/// step, from the target before (as Habitat 2.0's arm action does), within its limits. After the
-/// step the hand grasps the object that is nearest within the grasp sphere, or lets go.
+/// The base drives and turns kinematically as in the simulation, or its speeds approach those that
+/// the actions ask for (BaseDrive). It follows the floor. If its hulls would be deeper than
+/// kTolerance in the scene, it is pushed out along the ground, up to SlideOptions::attempts times,
+/// or stays where it is. Each joint action moves the target of its joint by its step, starting from
+/// the previous target (like Habitat 2.0's arm action), within the limits. After the step, the hand
+/// grasps the nearest object within the grasp sphere, or lets go.
 class RobotDriver {
  public:
-  /// All but `options` must outlive it. The robot stands in the world.
+  /// All arguments but `options` must outlive the driver. The robot must have been added to the
+  /// world.
   RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options);
 
-  /// `actions`: as ActionLayout says; clamped to [-1, 1], NaN counts as 0.
+  /// `actions`: in the order of ActionLayout; clamped to [-1, 1], NaN counts as 0.
   DrivenStep step(std::span<const float> actions);
 
-  /// Origin at the grasp point, axes of the end effector's link.
+  /// The grip's pose: origin at the grasp point, axes of the end effector's link.
   [[nodiscard]] Pose worldFromGrip() const;
-  /// What the joints are asked to be: one per position.
+  /// The targets of the joints: one per position.
   [[nodiscard]] std::span<const float> targets() const { return targets_; }
 
  private:
-  /// Where the base is to be after the step, before it looks what is in the way.
+  /// Where the base would be after the step if nothing were in the way.
   [[nodiscard]] Pose driveBase(std::span<const float> actions);
   [[nodiscard]] std::optional<Pose> clearOf(Pose world_from_root) const;
   [[nodiscard]] std::optional<Pose> onFloor(const Pose& world_from_root) const;
@@ -62,7 +63,7 @@ class RobotDriver {
   DynamicsWorld& world_;
   SimulationOptions options_;
   std::vector<float> targets_;
-  /// Of the base with BaseDrive::kVelocity, by the second.
+  /// Speeds of the base with BaseDrive::kVelocity, per second.
   BaseMotion speed_;
 };
 
@@ -70,12 +71,12 @@ class RobotDriver {
 [[nodiscard]] Pose gripOf(const Robot& robot, const Pose& world_from_root,
                           std::span<const float> positions);
 
-/// The joints' part of applyActions().
+/// The part of applyActions() that moves the joints.
 void moveJoints(const Robot& robot, std::span<const float> actions, std::span<float> positions);
 
-/// Moves joints and root as the simulation does before it looks at what is in the way: clamped
-/// actions, joints within their limits, then the turn, then the drive. `positions`: one per
-/// position of the robot.
+/// Moves joints and root as the simulation does before it checks for contacts: clamps the actions,
+/// moves joints within their limits, then turns, then drives. `positions`: one per position of the
+/// robot.
 void applyActions(const Robot& robot, std::span<const float> actions, Pose& world_from_root,
                   std::span<float> positions);
 

@@ -15,7 +15,8 @@ std::optional<std::size_t> heldIn(const EnvState& state) {
   return static_cast<std::size_t>(state.held);
 }
 
-/// The simulation of a recording, which stays where an episode ends until that has been looked at.
+/// Replays a recording in the simulation. An env stays at the end of its episode until that was
+/// read.
 class RecordingReplay {
  public:
   RecordingReplay(RecordingReader& recording, BatchSimulator& simulator)

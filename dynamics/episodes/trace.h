@@ -13,21 +13,21 @@
 
 namespace galactic::dynamics {
 
-/// What the simulation made of an action.
+/// A step of the simulation: the actions and their result.
 struct TracedStep {
   std::vector<float> actions;
-  /// After it.
+  /// State after the step.
   Pose world_from_root;
   std::vector<float> positions;
-  /// Index of an object of the episode, and where it is.
+  /// The held object, as an index among the episode's objects, and its pose.
   std::optional<std::size_t> held;
   Pose world_from_held;
-  /// The robot kept its pose; the robot was pushed clear.
+  /// Whether the robot kept its pose, and whether it was pushed clear.
   bool was_refused = false;
   bool has_slid = false;
 };
 
-/// An object that the hand let go of, and where the simulation put it.
+/// An object that the hand released, and where the simulation put it.
 struct TracedRelease {
   /// Number of the step.
   std::size_t step = 0;
@@ -35,7 +35,7 @@ struct TracedRelease {
   Pose world_from_object;
 };
 
-/// One episode of a recording from its start to its end in the simulation.
+/// One episode in the simulation, from its start to its end.
 struct EpisodeTrace {
   std::uint32_t env = 0;
   /// Index into the world's scenes, and into its episodes.
@@ -52,20 +52,20 @@ struct EpisodeTrace {
   EpisodeEnd end = EpisodeEnd::kNone;
 };
 
-/// The start of an episode that env `env` is in.
+/// A trace of the episode in env `env`, with its start but no steps.
 [[nodiscard]] EpisodeTrace beginTrace(std::uint32_t env, const EnvState& state);
 
 /// Adds a step to the episode. `was`, `is`: the env's statistics before and after it.
 void extendTrace(EpisodeTrace& trace, std::span<const float> actions, const EnvState& after,
                  const SimulationStatistics& was, const SimulationStatistics& is);
 
-/// World poses of the episode's objects after step `step`, also of the held one.
+/// World poses of the episode's objects after step `step`, including the held one.
 [[nodiscard]] std::vector<Pose> objectsAfter(const EpisodeTrace& trace, std::size_t step);
 
-/// Steps the simulation through the recording and keeps its episodes, by env and then by time.
-/// Episodes that the recording does not finish are left out. At most `most` of them, the first
-/// ones; 0: all. Fails with the errors of the recording, of checkWorld and BatchSimulator::create,
-/// and with kInvalidInput where a step of the simulation differs from the recorded one.
+/// Steps the simulation through the recording and returns its finished episodes, ordered by env and
+/// then by time: the first `most`, or all for 0. Fails with the errors of the recording, of
+/// checkWorld and BatchSimulator::create, and with kInvalidInput if a step of the simulation
+/// differs from the recorded one.
 [[nodiscard]] Result<std::vector<EpisodeTrace>> tracesOf(RecordingReader& recording,
                                                          const World& world, std::size_t most);
 

@@ -12,14 +12,14 @@
 namespace galactic::dynamics {
 namespace {
 
-/// Pixels of a picture, and of a look from one of the sides.
+/// Size in pixels of a picture, and of a trial view.
 constexpr std::uint32_t kWidth = 480;
 constexpr std::uint32_t kHeight = 360;
 constexpr std::uint32_t kLookWidth = 128;
 constexpr std::uint32_t kLookHeight = 96;
 constexpr float kFov = std::numbers::pi_v<float> / 4;
 
-// Where cameras are tried. Of those that see almost as much as the best one, the first is taken.
+// Where cameras are tried. Of those that see almost as much as the best one, the first is used.
 constexpr std::array kMeters{1.0F, 1.5F};
 constexpr std::array kDegreesUp{30.0F, 15.0F, 55.0F};
 constexpr int kSides = 12;
@@ -28,8 +28,8 @@ constexpr float kAlmost = 0.95F;
 
 float lengthOf(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
-/// All around a ball. The first ones look across the way from `robot` to it, where an arm that
-/// reaches for it hides little.
+/// Cameras all around a ball. The first ones look at right angles to the line from `robot` to the
+/// ball, so that an arm reaching for it hides little.
 std::vector<RenderCamera> camerasAround(const Vec3& center, float radius, const Vec3& robot) {
   constexpr float kRadians = std::numbers::pi_v<float> / 180;
   const float across =
@@ -61,7 +61,7 @@ std::array<Vec3, 8> cornersOf(const RenderModel& model, const RigidTransform& fr
 }
 
 bool isInside(const Vec3& point, const RenderModel& model, const RigidTransform& world_from_model) {
-  // What the near plane cuts off.
+  // Covers what the near plane cuts off.
   constexpr float kMargin = 0.05F;
   const Vec3 p = inverse(world_from_model) * point;
   const auto within = [](float low, float value, float high) {
@@ -72,7 +72,8 @@ bool isInside(const Vec3& point, const RenderModel& model, const RigidTransform&
          within(model.bounds_min.z, p.z, model.bounds_max.z);
 }
 
-/// Which share of the pixels of `alone` is in `among`, too: depths of the same camera.
+/// The share of the pixels of `alone` that are also visible in `among`; both are depths from the
+/// same camera.
 float shareSeen(std::span<const float> alone, std::span<const float> among) {
   constexpr float kSame = 0.002F;
   std::size_t all = 0;
@@ -112,7 +113,7 @@ Result<std::unique_ptr<BestView>> BestView::create(const World& world,
   const RenderLibrary& library = view->models_.library();
   RenderOptions look = imageOptions(kLookWidth, kLookHeight, follow.near);
   look.color = ColorFormat::kNone;
-  // Of each camera all that it sees, and the subject alone.
+  // Two views per camera: everything, and the subject alone.
   ASSIGN_OR_RETURN(view->looks_, ImageBatch::create(library, look, 2 * kCameras));
   RenderOptions picture = imageOptions(kWidth, kHeight, follow.near);
   picture.depth = false;
@@ -157,7 +158,7 @@ BestView::Cutout BestView::cutOut(const Still& still, const PictureSubject& subj
     if (const auto place = still.places[object]) cutout.posed.push_back(still.posed[*place]);
   }
   if (subject.link) {
-    // A link that is a frame alone is seen by what is fixed to it.
+    // A link that is a bare frame is shown by what is fixed to it.
     std::vector<AttachedModel> fixed;
     for (std::size_t n = 0; n < still.view.attached.size(); ++n) {
       const AttachedModel& one = still.view.attached[n];
@@ -224,7 +225,7 @@ std::vector<float> BestView::sharesSeen(const Still& still, const Cutout& cutout
 
 std::array<RenderCamera, 2> BestView::camerasFor(const std::array<const Still*, 2>& stills,
                                                  const PictureSubject& subject) {
-  // The sides are those of the first robot and subject, in the other world, too.
+  // The directions are relative to the robot and subject in the first still, for both stills.
   std::array<std::vector<RenderCamera>, 2> cameras;
   std::vector<float> worth(kCameras);
   Vec3 robot_from_subject;
@@ -233,7 +234,7 @@ std::array<RenderCamera, 2> BestView::camerasFor(const std::array<const Still*, 
     if (n == 0) robot_from_subject = stills[n]->bodies.front().origin - cutout.center;
     cameras[n] = camerasAround(cutout.center, cutout.radius, cutout.center + robot_from_subject);
     const std::vector<float> shares = sharesSeen(*stills[n], cutout, cameras[n]);
-    // Half of both is worth more than all of one.
+    // Seeing half of both is worth more than all of one.
     for (std::size_t k = 0; k < kCameras; ++k) worth[k] += std::sqrt(shares[k]);
   }
   const float best = *std::ranges::max_element(worth);

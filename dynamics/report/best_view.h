@@ -27,34 +27,34 @@ struct PictureSubject {
 struct Still {
   /// Index into World::scenes().
   std::uint32_t scene = 0;
-  /// As the camera sees it that follows the robot, without `posed` and `bodies`.
+  /// The view of the camera that follows the robot, without `posed` and `bodies`.
   RenderView view;
   std::vector<PosedModel> posed;
   std::vector<RigidTransform> bodies;
-  /// By object of the env: its place in `posed`; none where it has nothing to show.
+  /// By object of the env: its index in `posed`; none if it has nothing to show.
   std::vector<std::optional<std::size_t>> places;
 };
 
-/// Draws stills from where most of their subject is seen: it looks from all around, counts the
-/// pixels of the subject and those of them that nothing hides. The software renderer does it, so
-/// that the pictures are the same on every machine.
+/// Draws stills from where most of their subject is visible: looks at it from all around, and
+/// counts how many of its pixels are not hidden. Uses the software renderer, so that the pictures
+/// are the same on every machine.
 class BestView {
  public:
-  /// `world` must outlive it; `simulator` is one of those that stills are taken of, which have one
-  /// env. Fails as WorldModels::from, chooseCamera and BatchRenderer::create do.
+  /// `world` must outlive the result. `simulator` is one of the simulators, of one env each, from
+  /// which stills are taken. Fails as WorldModels::from, chooseCamera and BatchRenderer::create do.
   [[nodiscard]] static Result<std::unique_ptr<BestView>> create(const World& world,
                                                                 const BatchSimulator& simulator);
 
-  /// Valid as long as this lives.
+  /// A still of the simulator's env. Valid while this object lives.
   [[nodiscard]] Still take(const BatchSimulator& simulator);
 
-  /// The same moment without the robot, an object at another place.
+  /// The same moment without the robot, with an object in a different pose.
   [[nodiscard]] static Still withoutRobot(const Still& still, std::size_t object,
                                           const Pose& world_from_object);
 
-  /// Cameras for two stills, which see their subjects from the same side and as far away, so that
-  /// the pictures compare: from where most of both is seen. They stand where the column grids are
-  /// free and outside of robot and objects. Where no such camera sees anything of the subject,
+  /// Cameras for two stills that see their subjects from the same side and distance, so that the
+  /// pictures can be compared, and from where most of both is visible. They stand where the column
+  /// grids are free, and outside of robot and objects. If no such camera sees the subject, uses
   /// those that follow the robots.
   [[nodiscard]] std::array<RenderCamera, 2> camerasFor(const std::array<const Still*, 2>& stills,
                                                        const PictureSubject& subject);
@@ -74,7 +74,7 @@ class BestView {
   BestView(const World& world, WorldModels models) : world_(world), models_(std::move(models)) {}
 
   [[nodiscard]] Cutout cutOut(const Still& still, const PictureSubject& subject) const;
-  /// By camera: which share of the subject is seen; 0 where there is no place for a camera.
+  /// By camera: the visible share of the subject; 0 where there is no room for a camera.
   [[nodiscard]] std::vector<float> sharesSeen(const Still& still, const Cutout& cutout,
                                               const std::vector<RenderCamera>& cameras);
   [[nodiscard]] bool hasPlaceFor(const Vec3& camera, const Still& still) const;

@@ -101,7 +101,7 @@ void takeContacts(const Json& json, EpisodeComparison& c) {
   }
 }
 
-/// Throws where something is missing or of another kind.
+/// Throws if something is missing or has the wrong type.
 EpisodeComparison comparisonOf(const Json& json) {
   EpisodeComparison c;
   c.env = json.at("of").at(0).get<std::uint32_t>();
@@ -131,8 +131,8 @@ EpisodeComparison comparisonOf(const Json& json) {
   return c;
 }
 
-/// Whether everything that it refers to is there: links of the robot and steps of its own, with the
-/// gaps after those that both worlds made.
+/// Whether everything exists to which a comparison refers: links of the robot, its own steps, and a
+/// gap for each step that both worlds made.
 bool isSound(const EpisodeComparison& c, std::size_t links) {
   const auto has_link = [links](const auto& missed) { return std::get<0>(missed.first) < links; };
   const std::size_t steps = std::min(c.steps, c.steps_in_dynamics);
@@ -142,7 +142,7 @@ bool isSound(const EpisodeComparison& c, std::size_t links) {
          std::ranges::all_of(c.rests, [&c](const Rest& rest) { return rest.step < c.steps; });
 }
 
-/// What a record says; nothing where it is of another kind, or not sound.
+/// Number and comparison from a record; none if it has another format, or is not sound.
 std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(std::string_view record,
                                                                     std::size_t links) {
   try {

@@ -11,20 +11,20 @@
 
 namespace galactic::dynamics {
 
-/// The episodes that are done, kept beside the report until that is written, as lines of JSON whose
-/// numbers read back exactly: see Journal. Threads may add at the same time.
+/// The finished episodes, kept beside the report until that is written, as lines of JSON whose
+/// numbers read back exactly: see Journal. Threads may add records concurrently.
 class ComparisonJournal {
  public:
-  /// `links`: how many the robot has. Records that are of no comparison with it do not count. Fails
-  /// as Journal::open.
+  /// `links`: the robot's number of links. Records that do not fit such a robot are ignored. Fails
+  /// as Journal::open does.
   [[nodiscard]] static Result<ComparisonJournal> open(const std::filesystem::path& path,
                                                       std::string_view subject, std::size_t links);
 
-  /// Those that were done before, by their numbers in the run.
+  /// The episodes that were finished before, by their numbers in the run.
   [[nodiscard]] const std::map<std::size_t, EpisodeComparison>& done() const { return done_; }
   /// Fails with kIo.
   [[nodiscard]] Result<void> add(std::size_t number, const EpisodeComparison& comparison);
-  /// After the report is written.
+  /// Removes the journal, after the report is written.
   void remove() { journal_->remove(); }
 
  private:

@@ -67,12 +67,11 @@ Ranking rank(const std::vector<EpisodeComparison>& episodes) {
 
 std::uint32_t lastFrame(const RunTrack& track) { return static_cast<std::uint32_t>(track.steps()); }
 
-/// In which frame after a step the robot of a track stands most as it does in a frame of another
-/// one: by where its root is, a point ahead of it, and its joints. The start where there is no
-/// step.
+/// The frame after a step in which the robot's pose is closest to that in a frame of another track,
+/// by its root, a point ahead of it, and its joints. The first frame if there are no steps.
 std::uint32_t likestFrame(const RunTrack& track, const RunTrack& other, std::uint32_t frame) {
   constexpr Vec3 kAhead{0.5F, 0, 0};
-  // Meters for a radian, as a joint moves a hand.
+  // Meters that count as much as a radian, about as far as a joint moves the hand.
   constexpr float kReach = 0.5F;
   const std::size_t positions = track.positionCount();
   const auto root_of = [](const RunTrack& one, std::size_t at) -> const Pose& {

@@ -13,16 +13,16 @@
 
 namespace galactic::dynamics {
 
-/// What went wrong at a moment.
+/// What went wrong at a moment. The unit of Moment::meters depends on it.
 enum class MomentKind : std::uint8_t {
-  /// The episode succeeds in the simulation alone; the hands begin to hold different things, or
-  /// where they never do, the episode ends. Meters: between the grips.
+  /// The episode succeeds only in the simulation. The moment is when the hands begin to hold
+  /// different things, or else the end of the episode. Meters: between the grips.
   kLost,
-  /// The deepest contact that the simulation does not see. Meters: how deep.
+  /// The deepest contact that the simulation misses. Meters: its depth.
   kMissed,
-  /// Farthest apart while the hands hold the same. Meters: between the grips.
+  /// The grips are farthest apart while the hands hold the same. Meters: between the grips.
   kApart,
-  /// An object is let go that does not stay. Meters: how far it is two seconds later.
+  /// An object is released and does not stay. Meters: how far it has moved two seconds later.
   kMoved,
 };
 inline constexpr std::array<std::string_view, 4> kMomentNames{"success lost", "contact missed",
@@ -37,13 +37,13 @@ struct Moment {
   float meters = 0;
 };
 
-/// The worst moments, at most `most`: in turn the worst of each kind that is left, in the order of
-/// the kinds. Of each kind and episode there is one. In a closed loop the actions differ, and that
-/// the grips are apart means nothing. What is no more than kDisturbed apart or moved is no moment.
+/// The worst moments, at most `most`: takes the worst remaining one of each kind in turn, in the
+/// order of the kinds. Each episode has at most one moment of a kind. Distances up to kDisturbed do
+/// not count. In a closed loop there is no kApart, since the actions differ.
 [[nodiscard]] std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes,
                                                std::size_t most, ComparisonMode mode);
 
-/// In which world a moment is seen, and after how many steps.
+/// The world in which to look at a moment, and after how many steps.
 struct MomentPlace {
   bool is_simulation = false;
   std::uint32_t frame = 0;
@@ -51,20 +51,20 @@ struct MomentPlace {
   friend bool operator==(const MomentPlace&, const MomentPlace&) = default;
 };
 
-/// Contacts and releases are looked for in the simulation: their steps are its steps. All else is
-/// seen in the dynamics, which in a closed loop takes steps of its own. `steps`,
-/// `steps_in_dynamics`: of the episode in both worlds; where it ends before, its end is seen.
+/// Contacts and releases are shown in the simulation, whose steps they count. Everything else is
+/// shown in the dynamics, whose steps in a closed loop are its own. `steps`, `steps_in_dynamics`:
+/// the length of the episode in both worlds; if the episode ends before the moment, its end is
+/// shown.
 [[nodiscard]] MomentPlace placeOf(const Moment& moment, std::size_t steps,
                                   std::size_t steps_in_dynamics);
 
-/// An episode in both worlds, each the first env of its track.
+/// An episode in both worlds; each is the first env of its track.
 struct BothTracks {
   const RunTrack& simulated;
   const RunTrack& dynamic;
 };
 
-/// What a moment looks like in one of them: in which frame of its track, and what is to be said of
-/// it.
+/// A moment in one of the worlds: the frame of its track, and the caption.
 struct MomentSide {
   std::uint32_t frame = 0;
   std::string said;
@@ -73,15 +73,16 @@ struct MomentSide {
 struct MomentSides {
   MomentSide simulated;
   MomentSide dynamic;
-  /// Of an object that was let go, where it is in the dynamics two seconds later: all else is as in
-  /// the simulation, and the robot is gone.
+  /// For a released object: its pose in the dynamics two seconds later. The rest of that picture is
+  /// as in the simulation, without the robot.
   std::optional<Pose> rest;
 };
 
-/// In a replay both are seen after the same step. In a closed loop the same step says nothing:
-/// where a success is lost, both ends are seen, and else the dynamics when the robot stands
-/// most as it does in the simulation. What an object did that was let go is seen two seconds later.
-/// Where an episode ends before, its end is seen, and its start where it has no step.
+/// How to show a moment in both worlds. In a replay, both are shown after the same step. In a
+/// closed loop, the same step means little: for a lost success, both ends are shown, and otherwise
+/// the frame of the dynamics in which the robot's pose is closest to that in the simulation. A
+/// released object is shown two seconds later. If an episode ends before the moment, its end is
+/// shown, or its start if it has no steps.
 [[nodiscard]] MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
                                   const BothTracks& tracks, ComparisonMode mode);
 

@@ -27,7 +27,8 @@ Json jsonOf(const Share& share) {
           {"interval", {share.low, share.high}}};
 }
 
-/// Numbers and truth values as such; what a user gives the task is not sorted into them otherwise.
+/// Options as JSON. Numbers and truth values keep their type, unless the option is a word;
+/// everything else is text.
 Json jsonOf(const std::vector<OptionText>& options) {
   Json json = Json::object();
   for (const auto& [name, text, is_word] : options) {
@@ -103,7 +104,7 @@ Json gapsOf(const Sums& sums) {
   return gaps;
 }
 
-/// None where the dynamics made no step.
+/// The gap after the last step; none if the dynamics made no step.
 std::optional<float> lastOf(std::span<const float> gaps) {
   return gaps.empty() ? std::nullopt : std::optional(gaps.back());
 }
@@ -169,7 +170,7 @@ Sums sumsOf(const Comparisons& comparisons, const ReportSubject& subject) {
   return sums;
 }
 
-/// Lines of a name and a value, which stand below each other however long the names are.
+/// Lines of names and values, with the values aligned.
 class Table {
  public:
   void line(std::string name, std::string value) {
@@ -200,7 +201,7 @@ void addSuccess(const Sums& sums, Table& table) {
              fmt::format("{}, {}", outcomes.lost_picking, outcomes.lost_later));
 }
 
-/// Of nothing there is nothing to tell but that.
+/// A line about the released objects; just "0" if there are none.
 std::string releasesText(const Sums& sums) {
   if (sums.displacements.empty()) return "0";
   return fmt::format(

@@ -20,29 +20,29 @@ struct Share {
 };
 [[nodiscard]] Share wilson(std::uint32_t count, std::uint32_t of);
 
-/// What a report is of.
+/// What a report is about.
 struct ReportSubject {
   ComparisonMode mode = ComparisonMode::kReplay;
   /// Name of the recording that was replayed, or of the policy that closed the loop.
   std::string played;
   WorldOptions world;
-  /// Of a closed loop.
+  /// Only for a closed loop.
   LoopOptions loop;
   std::vector<std::string> warnings;
 };
 
-/// The options that decide what the report says: those of a closed loop where it is one.
+/// The options that affect the report, including those of the closed loop if it is one.
 [[nodiscard]] std::vector<OptionText> optionsOf(const ReportSubject& subject);
 
-/// All that a report is made of.
+/// Everything from which a report is made.
 struct Comparisons {
   std::vector<EpisodeComparison> episodes;
   std::vector<Moment> worst;
 };
 
-/// The report as JSON, and as a table for people. How far the worlds are apart step by step is told
-/// of replays only: in a closed loop the actions differ. The same for any number of threads: no
-/// times.
+/// The report as JSON, and as a table for people. Only reports of replays say how far the worlds
+/// are apart step by step, as actions differ in a closed loop. Reports contain no times, so they do
+/// not depend on the number of threads.
 [[nodiscard]] std::string reportJson(const Comparisons& comparisons, const World& world,
                                      const ReportSubject& subject);
 [[nodiscard]] std::string reportTable(const Comparisons& comparisons, const World& world,

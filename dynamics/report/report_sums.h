@@ -8,33 +8,33 @@
 
 namespace galactic::dynamics {
 
-/// Farther is away, leaning more is tipped, lower is fallen: meters, radians, meters.
+/// Thresholds above which a released object is away (meters), tipped (radians) or fallen (meters).
 inline constexpr double kAway = 0.05;
 inline constexpr double kTipped = 0.52359877559829887;
 inline constexpr double kFallen = 0.1;
 
-/// How far the worlds are apart after so many steps, of the episodes that are as long.
+/// How far the worlds are apart after `step` steps, for the episodes that are that long; meters.
 struct Gap {
   std::size_t step = 0;
   std::vector<double> base;
   std::vector<double> grip;
 };
 
-/// Of all episodes, by what became of the target in both worlds.
+/// Counts of episodes, by what became of the target in both worlds.
 struct Outcomes {
   std::uint32_t in_simulation = 0;
   std::uint32_t in_dynamics = 0;
   std::uint32_t settled = 0;
   std::uint32_t both = 0;
-  /// Target in the hand at some time, in the dynamics.
+  /// The target was in the hand at some time in the dynamics.
   std::uint32_t picked = 0;
-  /// Of the successes in the simulation that are none in the dynamics: the hand never held the
-  /// target there; it did, and the target is elsewhere at the end.
+  /// Successes in the simulation that fail in the dynamics, because the hand never held the target
+  /// there, or although it did.
   std::uint32_t lost_picking = 0;
   std::uint32_t lost_later = 0;
 };
 
-/// All episodes together.
+/// Sums over all episodes.
 struct Sums {
   std::uint32_t episodes = 0;
   Outcomes outcomes;
@@ -52,18 +52,18 @@ struct Sums {
   std::uint32_t fallen = 0;
   std::vector<Gap> gaps;
 
-  /// Of the steps of the simulation.
+  /// `count` per thousand steps of the simulation.
   [[nodiscard]] double perThousand(std::uint64_t count) const;
   [[nodiscard]] std::uint64_t inventedSteps() const;
-  /// Contacts that a cause hides, by cause.
+  /// Missed contacts, by cause.
   [[nodiscard]] std::map<MissCause, std::uint64_t> missedByCause() const;
-  /// Objects that were let go and are more than kAway from where they were put.
+  /// The number of released objects that moved by more than kAway.
   [[nodiscard]] std::uint32_t away() const;
 };
 
 [[nodiscard]] Sums sumOf(const std::vector<EpisodeComparison>& episodes);
 
-/// The value that `share` of the values do not exceed, 0 of none.
+/// The value that the share `share` of the values does not exceed; 0 if there are no values.
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 
 }  // namespace galactic::dynamics

@@ -26,10 +26,10 @@
 namespace galactic::dynamics {
 namespace {
 
-/// Episodes on a page that has no moments.
+/// The number of episodes on a page without moments.
 constexpr std::size_t kWithoutMoments = 4;
 
-/// Keeps what one world looks like while an episode is played in it.
+/// Records one world while an episode is played in it.
 class RunRecorder {
  public:
   /// `best`: takes a still of each frame; null without pictures.
@@ -55,7 +55,7 @@ class RunRecorder {
   std::vector<Still> stills_;
 };
 
-/// Lets a lane follow what the simulation did.
+/// Makes a lane repeat what the simulation did.
 void replaySimulation(const EpisodeTrace& trace, EpisodeLane& lane, RunRecorder& recorder) {
   lane.begin(trace.episode, ArmDrive::kKinematic);
   recorder.record(lane.simulator(), {});
@@ -71,7 +71,7 @@ void replaySimulation(const EpisodeTrace& trace, EpisodeLane& lane, RunRecorder&
   }
 }
 
-/// What is to be seen of a moment.
+/// What a picture of a moment must show.
 PictureSubject subjectOf(const Moment& moment, const EpisodeComparison& episode,
                          const EpisodeTrace& trace, const Robot& robot) {
   switch (moment.kind) {
@@ -103,7 +103,8 @@ std::string factsOf(const ReportSubject& subject) {
   return json.take();
 }
 
-/// All episodes of the worst moments, played again; where there are none, the first episodes.
+/// Plays the episodes of the worst moments again, or the first episodes if there are no such
+/// moments.
 class SideBySide {
  public:
   SideBySide(const SideBySideParts& parts, const SideBySideFiles& files)
@@ -182,7 +183,7 @@ class SideBySide {
     twins_.insert(twins_.end(), {first + 1, first});
   }
 
-  /// Points the page at a moment of the two envs that it has last.
+  /// Adds a moment of the page's last two envs.
   void keep(std::size_t n, const RunTrack& simulated, const RunTrack& dynamic) {
     const Moment& moment = worst()[n];
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
@@ -216,7 +217,7 @@ class SideBySide {
 
   const SideBySideParts& parts_;
   const SideBySideFiles& files_;
-  /// Follow the two worlds.
+  /// Lanes that follow the two worlds.
   std::unique_ptr<EpisodeLane> simulated_lane_;
   std::unique_ptr<EpisodeLane> dynamic_lane_;
   /// Null without pictures.

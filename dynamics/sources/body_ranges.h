@@ -8,20 +8,20 @@
 
 namespace galactic::dynamics {
 
-// What bodies may have. The engine computes with floats: numbers that are far from all that robots
-// meet are lost in them, or make others be lost.
+// Ranges of the properties of bodies. The engine computes in floats: numbers far from those of real
+// robots and objects would vanish in rounding, or make others vanish.
 
 /// Kilograms.
 inline constexpr Within<double> kMasses{1e-6, 1e6};
-/// Of a surface; that of a pair is the product.
+/// Friction of a surface; the friction of a pair is the product.
 inline constexpr Within<double> kFrictions{0, 10};
-/// Of a center of mass along an axis, meters.
+/// Coordinates of a center of mass, meters.
 inline constexpr Within<double> kCenters{-bake::kMaxCoordinate, bake::kMaxCoordinate};
-/// Principal moments of inertia, kg m^2: from those of a grain of the least mass to those of the
-/// greatest mass as far out as shapes reach.
+/// Principal moments of inertia, kg m^2: from those of a grain with the smallest mass to those of
+/// the largest mass at the largest distance of a shape.
 inline constexpr Within<double> kMoments{1e-15, 1e12};
 
-/// False of what is no number.
+/// Whether a value is within a range; false for NaN.
 [[nodiscard]] constexpr bool contains(const Within<double>& range, double value) {
   return range.least <= value && value <= range.most;
 }

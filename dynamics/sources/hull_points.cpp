@@ -14,7 +14,7 @@ namespace {
 
 using bake::Affine;
 
-/// Corners of the polygons that stand for circles: the hull is thinner than the circle by 0.5 %.
+/// Corners of the polygons that approximate circles: the hull is 0.5 % thinner than the circle.
 constexpr int kRing = 32;
 constexpr int kRingsOfSphere = 16;
 
@@ -25,7 +25,7 @@ Vec3 transformed(const Affine& m, double x, double y, double z) {
   return {row(0), row(1), row(2)};
 }
 
-/// In the order of the vertices, whatever that of the triangles.
+/// The corners in the order of the vertices, not of the triangles.
 HullPoints cornersOf(const bake::SourceAsset& asset, const bake::SourceInstance& instance) {
   const bake::SourceMesh& mesh = asset.meshes[instance.mesh];
   std::vector<bool> is_corner(mesh.positions.size(), false);

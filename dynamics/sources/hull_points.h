@@ -10,25 +10,26 @@
 
 namespace galactic::dynamics {
 
-/// Points of which a convex piece is the hull, meters.
+/// Points whose convex hull is a piece of a shape, meters.
 using HullPoints = std::vector<Vec3>;
 
-/// The corners of an asset's triangles, all meshes together, in its world frame; each vertex once
-/// for each mesh that is placed. Vertices that no triangle uses are no part of the surface: files
-/// hold stray ones, which importers do not check.
+/// The corners of an asset's triangles, of all meshes together, in the asset's world frame. Each
+/// vertex appears once per placed mesh. Stray vertices that no triangle uses are left out;
+/// importers do not check for them.
 [[nodiscard]] HullPoints cornersOf(const bake::SourceAsset& asset);
 
-/// The corners of an asset of convex pieces: each mesh that is placed is one, or all together are
-/// with `is_joined`. Leaves out those that have fewer than four corners, so there may be none.
+/// The corners of an asset made of convex pieces: each placed mesh is a piece, or with `is_joined`,
+/// all of them together. Pieces with fewer than four corners are left out, so the result may be
+/// empty.
 [[nodiscard]] std::vector<HullPoints> piecesOf(const bake::SourceAsset& asset, bool is_joined);
 
-/// The points of which a link's shapes are the hulls, in the link's frame: of its collision
-/// elements, or of its visuals where it has none. Meshes of robots lie in source.meshes.
+/// The points whose hulls are a link's shapes, in the link's frame: from its collision elements, or
+/// from its visuals if it has none. The robot's meshes are in source.meshes.
 [[nodiscard]] std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
                                                    const bake::SourceLink& link);
 
-/// Fails with kInvalidInput where a point is farther than bake::kMaxCoordinate from the origin
-/// along an axis, or no number. `where`: whose points they are.
+/// Fails with kInvalidInput if a coordinate of a point is larger than bake::kMaxCoordinate in
+/// magnitude, or not a number. `where`: what the points belong to, for the message.
 [[nodiscard]] Result<void> checkExtents(std::span<const HullPoints> hulls,
                                         const std::string& where);
 

@@ -20,13 +20,14 @@ bool isFile(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, none);
 }
 
-/// What stands there, for a warning: lists and objects by their kind, as they may be long and deep.
+/// A value as text, for a warning; lists and objects only by their kind, as they may be long and
+/// deep.
 std::string textOf(const Json& json) {
   if (json.is_array()) return "a list";
   return json.is_object() ? "an object" : json.dump();
 }
 
-/// A number within the range; none, with a warning, where it is anything else.
+/// A number within the range; none if it is missing, or, with a warning, if it is anything else.
 std::optional<double> numberOf(const Json& json, const char* key, const Within<double>& range,
                                ObjectConfig& config) {
   const auto found = json.find(key);

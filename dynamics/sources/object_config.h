@@ -9,30 +9,30 @@
 
 namespace galactic::dynamics {
 
-/// What a Habitat object configuration (`NAME.object_config.json`) says of a body.
+/// The physical properties in a Habitat object configuration (`NAME.object_config.json`).
 struct ObjectConfig {
   std::filesystem::path file;
-  /// Kilograms, one of kMasses.
+  /// Kilograms, within kMasses.
   std::optional<double> mass;
-  /// Of its surface, one of kFrictions.
+  /// Friction of the surface, within kFrictions.
   std::optional<double> friction;
-  /// A mesh whose parts are convex pieces; empty: none is given.
+  /// A mesh whose parts are convex pieces; empty if none is given.
   std::filesystem::path collision_asset;
-  /// Whether the hull of the whole collision asset counts, instead of one for each of its meshes.
+  /// Whether to use the hull of the whole collision asset instead of one hull per mesh.
   bool joins_meshes = false;
-  /// What it says that is not taken, one sentence each.
+  /// One sentence for each value that is not used.
   std::vector<std::string> warnings;
 };
 
-/// Where the configuration of the object `name` lies whose mesh is `mesh`: in the mesh's folder or
-/// one of the three above it, there or in `configs` or `configs/objects`, as ReplicaCAD and
-/// Habitat's YCB objects have it. None where there is none.
+/// The configuration file of the object `name` with the mesh `mesh`. Looks in the mesh's folder and
+/// the three above it, and in `configs` and `configs/objects` below each of these, as in ReplicaCAD
+/// and Habitat's YCB objects. None if there is no such file.
 [[nodiscard]] std::optional<std::filesystem::path> findObjectConfig(
     const std::filesystem::path& mesh, std::string_view name);
 
-/// Reads one. Values that no body has (body_ranges.h) become warnings. Fails with kIo, and with
-/// kInvalidInput where the file is no JSON object, is larger than 1 MiB or, as far as the bake's
-/// reader of JSON says so, nested too deeply.
+/// Reads a configuration. Values outside the ranges in body_ranges.h become warnings. Fails with
+/// kIo, and with kInvalidInput if the file is not a JSON object, is larger than 1 MiB, or is nested
+/// too deeply for the bake's JSON reader.
 [[nodiscard]] Result<ObjectConfig> readObjectConfig(const std::filesystem::path& file);
 
 }  // namespace galactic::dynamics

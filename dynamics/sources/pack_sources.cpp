@@ -26,7 +26,8 @@ std::vector<SourceFile> sourcesOf(const PackFile& pack) {
   return sources;
 }
 
-/// Several objects share a pack, which names the files of each below the object's name.
+/// The prefix of an asset's files in its pack: several objects share a pack, which puts the files
+/// of each below the object's name.
 std::string prefixOf(PackKind kind, std::string_view name) {
   return kind == PackKind::kObjects ? std::string(name) + "/" : std::string();
 }

@@ -13,44 +13,43 @@
 
 namespace galactic::dynamics {
 
-/// What is there now of the files that one scene, object or robot is baked from.
+/// The present files from which one scene, object or robot is baked.
 struct AssetSources {
   PackKind kind = PackKind::kScene;
-  /// In its pack.
+  /// The name in its pack.
   std::string_view name;
-  /// By their names relative to the folder of the main input, as importers name them.
+  /// Named relative to the folder of the main input, as importers do.
   std::vector<bake::SourceFile> files;
-  /// What the job names besides, such as a robot's recipe: by their own names. Empty paths are
-  /// none.
+  /// Other files that the job names, such as a robot's recipe, under their own names. Empty paths
+  /// are ignored.
   std::vector<std::filesystem::path> named{};
 };
 
-/// What the packs of a world say that they were baked from. Immutable.
+/// The source files that the packs of a world list. Immutable.
 class PackSources {
  public:
   explicit PackSources(const World& world);
 
-  /// What the pack lists of an asset's own files, named as AssetSources::files are.
+  /// The asset's own files as listed in its pack, named as in AssetSources::files.
   [[nodiscard]] std::vector<bake::SourceFile> listed(PackKind kind, std::string_view name) const;
 
-  /// One sentence for each file whose content is not what the asset's pack was baked from, or that
-  /// this does not list; a file that has moved, whose content it lists, is the same. None where the
-  /// pack does not say what it was baked from. Fails with kIo where a file of `now.named` cannot be
-  /// read.
+  /// One sentence for each file whose content differs from that in the asset's pack, or that the
+  /// pack does not list. A file that was moved is the same if its content is listed. Empty if the
+  /// pack does not list its sources. Fails with kIo if a file in `now.named` cannot be read.
   [[nodiscard]] Result<std::vector<std::string>> differences(const AssetSources& now) const;
 
  private:
-  /// The sources of the pack that holds the asset; null where none does.
+  /// The sources of the pack that holds the asset; null if no pack does.
   [[nodiscard]] const std::vector<bake::SourceFile>* of(PackKind kind, std::string_view name) const;
 
-  /// Of each pack.
+  /// By pack.
   std::vector<std::vector<bake::SourceFile>> sources_;
   /// Index of the pack that holds an asset.
   std::map<std::pair<PackKind, std::string>, std::size_t> pack_of_;
 };
 
-/// A hash of the files whose content `log` tells, by their paths, in hexadecimal digits. What was
-/// looked for in vain does not count: once it is there, it is read.
+/// A hash, in hexadecimal digits, of paths and contents of the files in `log` that have a content.
+/// Files that were looked for but not found do not count: if one appears, it will be read.
 [[nodiscard]] std::string digestOf(const bake::ReadLog& log);
 
 }  // namespace galactic::dynamics

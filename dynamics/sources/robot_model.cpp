@@ -14,7 +14,7 @@
 namespace galactic::dynamics {
 namespace {
 
-/// Rounded numbers of real files may miss the inequality of moments by this share.
+/// Rounded numbers in real files may violate the inequality of moments by this share.
 constexpr double kMomentSlack = 0.01;
 
 struct Box {
@@ -94,14 +94,14 @@ bool canBeMoments(const std::array<double, 6>& moments) {
          principal[2] <= (principal[0] + principal[1]) * (1 + kMomentSlack);
 }
 
-/// (x, y, z) becomes (x, z, -y), as importRobot has it.
+/// Turns (x, y, z) into (x, z, -y), as importRobot does.
 Inertia yUp(const bake::LinkInertial& stated) {
   const auto& [x, y, z] = stated.center;
   const auto& [xx, yy, zz, xy, xz, yz] = stated.moments;
   return {.mass = stated.mass, .center = {x, z, -y}, .moments = {xx, zz, yy, xz, -xy, -yz}};
 }
 
-/// What the robot's file says of a link, or what stands in for it; nothing for a bare frame.
+/// The inertia of a link from the robot's file, or a substitute; none for a bare frame.
 class LinkInertias {
  public:
   /// `file`: its name, for warnings.
@@ -141,7 +141,7 @@ class LinkInertias {
     return inertia;
   }
 
-  /// Of a body none of whose links has mass or shape.
+  /// The inertia of a body whose links have neither mass nor shape.
   Inertia ofNothing(std::string_view link) {
     warnings_.push_back(fmt::format("link '{}' moves and has neither mass nor shape; {} kg count",
                                     link, defaults_.least_mass));
@@ -154,7 +154,7 @@ class LinkInertias {
     return {{-half, -half, -half}, {half, half, half}};
   }
 
-  /// Flat boxes turn about some axis without a moment.
+  /// A flat box would have no moment about some axis, so give it a thickness.
   [[nodiscard]] Box thickened(Box box) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double lack = std::max(defaults_.least_size / 5 - box.size(axis), 0.0);
@@ -242,7 +242,7 @@ Inertia sumOf(const std::vector<Inertia>& parts) {
   return sum;
 }
 
-/// Which body each link belongs to.
+/// The body to which each link belongs.
 std::vector<std::uint32_t> groupLinks(const Robot& robot) {
   std::vector<std::uint32_t> body_of_link;
   std::uint32_t bodies = 0;

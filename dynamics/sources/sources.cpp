@@ -29,7 +29,7 @@ Result<void> noteContent(const std::filesystem::path& file, bake::ReadLog& log) 
   return {};
 }
 
-/// The mesh, and what is there of the files that its object was baked from.
+/// The mesh, and those of the files from which its object was baked that exist.
 Result<std::vector<bake::SourceFile>> filesOfMesh(const std::filesystem::path& mesh,
                                                   const std::vector<bake::SourceFile>& baked) {
   ASSIGN_OR_RETURN(auto main, bake::describeFile(mesh));
@@ -44,7 +44,7 @@ Result<std::vector<bake::SourceFile>> filesOfMesh(const std::filesystem::path& m
   return files;
 }
 
-/// Reads the jobs of a recipe as far as a world needs them.
+/// Reads those parts of a recipe's jobs that a world needs.
 class SourceReader {
  public:
   SourceReader(const World& world, bake::BakeLibraries& libraries, Sources& sources)
@@ -99,7 +99,7 @@ class SourceReader {
   /// Episodes and worlds are packs, not sources.
   Result<void> operator()(const auto& /*job*/) { return {}; }
 
-  /// Whether all is there.
+  /// Fails if something that the world needs was not in the recipe.
   [[nodiscard]] Result<void> finish(const std::filesystem::path& recipe) const {
     for (const std::string& name : scenes_) {
       if (!sources_.scenes.contains(name)) return absent(recipe, "scene", name);
@@ -111,7 +111,7 @@ class SourceReader {
     return {};
   }
 
-  /// Says of how many objects the masses are not known.
+  /// Warns of how many objects the masses are unknown.
   void warnOfDefaults() {
     if (without_mass_ == 0) return;
     sources_.warnings.push_back(fmt::format(
@@ -138,7 +138,7 @@ class SourceReader {
       object.hulls = piecesOf(asset, config.joins_meshes);
       if (!object.hulls.empty()) {
         RETURN_IF_ERROR(checkExtents(object.hulls, config.collision_asset.string()));
-        // What is not read may still have changed.
+        // The mesh is not read, but it may have changed since the bake.
         ASSIGN_OR_RETURN(auto files, filesOfMesh(mesh, packs_.listed(PackKind::kObjects, name)));
         RETURN_IF_ERROR(compareObject(name, std::move(files), job));
         return object;
@@ -161,7 +161,7 @@ class SourceReader {
     return asset;
   }
 
-  /// Warns where the packs were made of something else.
+  /// Warns if the packs were baked from different files.
   Result<void> compare(const AssetSources& now) {
     ASSIGN_OR_RETURN(auto differences, packs_.differences(now));
     std::ranges::move(differences, std::back_inserter(sources_.warnings));
@@ -195,7 +195,7 @@ class SourceReader {
 }  // namespace
 
 Result<Sources> readSources(const bake::RecipeSource& source, const World& world) {
-  // Nothing is written there: the list wants a name for the world.
+  // Nothing is written to this path; the list needs a name for the world.
   bake::BakeLibraries libraries;
   ASSIGN_OR_RETURN(const auto list, bake::jobsOfRecipe(source, "world.pack", libraries));
   Sources sources;

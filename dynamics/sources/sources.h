@@ -13,28 +13,28 @@
 
 namespace galactic::dynamics {
 
-/// What a world's packs lack: triangles, hulls and masses, by the names in the packs. Shapes are
-/// immutable; worlds on several threads share them.
+/// What a world's packs do not contain: triangles, hulls and masses, by the names in the packs.
+/// Shapes are immutable; worlds on several threads share them.
 struct Sources {
   std::map<std::string, std::shared_ptr<const SceneShape>, std::less<>> scenes;
   std::map<std::string, std::shared_ptr<const ObjectShape>, std::less<>> objects;
   RobotParts robot;
   std::shared_ptr<const RobotShape> robot_shape;
-  /// The recipe and the files that it names, also those that the world does not use, and what those
-  /// that were read refer to. Those that were read have their content: see digestOf().
+  /// The recipe, the files that it names, even if the world does not use them, and the files to
+  /// which those that were read refer. Entries of files that were read have their content: see
+  /// digestOf().
   bake::ReadLog log;
-  /// What was missing and what is taken instead, and which files are not those that the packs were
-  /// baked from, one sentence each.
+  /// One sentence for each thing that was missing and its substitute, and for each file that
+  /// differs from the one from which a pack was baked.
   std::vector<std::string> warnings;
 };
 
-/// Kilograms of objects whose mass nothing tells. Also the episode generator's.
+/// Mass of objects for which none is given, kilograms. The episode generator uses the same.
 inline constexpr double kObjectMass = 0.5;
 
-/// Reads what the scenes, objects and the robot of `world` were baked from; of scenes and objects
-/// only those that its episodes use, whatever `source` says of episodes. Fails with the errors of
-/// the recipe and the importers, and with kInvalidInput where the recipe makes no pack of something
-/// that the world has.
+/// Reads the files from which the robot of `world` was baked, and the scenes and objects that its
+/// episodes use; episodes in `source` are ignored. Fails with the errors of the recipe and the
+/// importers, and with kInvalidInput if the recipe does not make something that the world has.
 [[nodiscard]] Result<Sources> readSources(const bake::RecipeSource& source, const World& world);
 
 }  // namespace galactic::dynamics
