@@ -278,7 +278,7 @@ def summary(results: Sequence[EpisodeResult], world: galactic.World) -> dict[str
     for result in results:
         endings[result.ending] = endings.get(result.ending, 0) + 1
     sums = sums_of(results)
-    # Of none, all means are 0.
+    # Without episodes, all means are 0.
     count, steps = max(sums.episodes, 1.0), max(sums.steps, 1.0)
     measures = {name: total / count for name, total in sums.measures.items()}
     logs = {name: total / steps for name, total in sums.logs.items()}
