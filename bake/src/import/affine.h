@@ -7,10 +7,10 @@
 
 namespace galactic::bake {
 
-/// The transform that changes nothing.
+/// The identity transform.
 inline constexpr Affine kIdentityAffine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
-/// `a_from_b` after `b_from_c`.
+/// Applies `b_from_c` first, then `a_from_b`.
 [[nodiscard]] inline Affine compose(const Affine& a_from_b, const Affine& b_from_c) {
   Affine a_from_c{};
   for (std::size_t row = 0; row < 3; ++row) {
@@ -24,7 +24,7 @@ inline constexpr Affine kIdentityAffine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   return a_from_c;
 }
 
-/// The point `p` (frame b) in frame a.
+/// The point `p`, given in frame b, in frame a.
 [[nodiscard]] inline std::array<double, 3> transformed(const Affine& a_from_b, const Vec3& p) {
   const std::array<double, 3> from{static_cast<double>(p.x), static_cast<double>(p.y),
                                    static_cast<double>(p.z)};
@@ -36,7 +36,7 @@ inline constexpr Affine kIdentityAffine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   return to;
 }
 
-/// Volume scale of the linear part; negative when it mirrors.
+/// Volume scale of the linear part; negative if it mirrors.
 [[nodiscard]] inline double determinant(const Affine& m) {
   return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
          m[2] * (m[4] * m[9] - m[5] * m[8]);
@@ -46,8 +46,8 @@ inline constexpr Affine kIdentityAffine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   return std::all_of(m.begin(), m.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// Whether the linear part keeps volumes: compares the determinant with the lengths of the columns,
-/// so that uniformly small or large scales pass.
+/// Whether the linear part flattens nothing. Compares the determinant with the lengths of the
+/// columns, so that uniformly small or large scales pass.
 [[nodiscard]] inline bool isInvertible(const Affine& m) {
   constexpr double kFlatness = 1e-9;
   double lengths = 1;

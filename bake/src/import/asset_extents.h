@@ -5,8 +5,8 @@
 
 namespace galactic::bake {
 
-/// Of the box around all placed triangles, along the axes of the world: meters. Indices are in
-/// range, and there is a triangle.
+/// Extents in meters, along the axes of the world, of the box around all placed triangles. Expects
+/// indices in range and at least one triangle.
 [[nodiscard]] std::array<double, 3> extentsOf(const SourceAsset& asset);
 
 }  // namespace galactic::bake

@@ -25,7 +25,7 @@ void transferFields(Archive& archive, Is<EmbeddedTexture> auto& texture) {
   archive(texture.format, texture.bytes);
 }
 
-/// Everything of an asset but its meshes.
+/// All fields of an asset except its meshes.
 template <class Archive>
 void transferRest(Archive& archive, auto& asset) {
   archive(asset.name, asset.format, asset.convention, asset.meters_per_unit, asset.unit_is_stated,

@@ -18,24 +18,24 @@ void transferFields(Archive& archive, Is<ReadFiles> auto& read) {
   archive(read.files, read.absent, read.is_settled);
 }
 
-/// Writes a SourceAsset as bytes for another process of this same program: meshes one by one (so
-/// that the sender can free each when it is sent), then the rest; or an error.
+/// Sends a SourceAsset, or an error, as bytes to another process of this same program: first the
+/// meshes one by one, so that the sender can free each after sending it, then the rest.
 class AssetSender {
  public:
   explicit AssetSender(TransferSink sink) : sink_(std::move(sink)) {}
 
   void mesh(const SourceMesh& mesh) const;
-  /// Everything but the meshes, and the end.
+  /// Sends everything but the meshes, and ends the transfer.
   void finish(const SourceAsset& asset) const;
-  /// What went wrong, and the end; the meshes sent so far are forgotten.
+  /// Sends the error and ends the transfer; the receiver drops the meshes sent so far.
   void fail(const Error& error) const;
 
  private:
   TransferSink sink_;
 };
 
-/// The asset that was sent, or the error that was sent. Fails with kInternal when the bytes are no
-/// complete transfer; reads nothing beyond them.
+/// Returns the asset that was sent, or the error that was sent. Fails with kInternal if the bytes
+/// are not a complete transfer; never reads beyond them.
 [[nodiscard]] Result<SourceAsset> receiveAsset(std::span<const std::byte> bytes);
 
 }  // namespace galactic::bake

@@ -33,7 +33,7 @@
 namespace galactic::bake {
 namespace {
 
-/// What a reader's name means to us.
+/// What we make of a reader's name.
 struct Format {
   std::string_view reader;
   std::string_view name;
@@ -57,14 +57,14 @@ constexpr std::array kFormats{
     Format{kFbxReader, "Autodesk FBX", statedBy(UpAxis::kY, kByFile)},
 };
 
-/// The reader that was chosen for the file; null when it does not tell.
+/// The reader that was chosen for the file; null if the library does not report it.
 const aiImporterDesc* readerOf(const Assimp::Importer& importer) {
   const int index = importer.GetPropertyInteger("importerIndex", -1);
   return index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
 }
 
-/// Whether the reader is one for files of this name: where none of these accepts the content, the
-/// library takes any other that does.
+/// Whether the reader is meant for files of this name: if none of those accepts the content, the
+/// library takes any other reader that does.
 bool isForName(const aiImporterDesc& reader, const std::filesystem::path& path) {
   const std::string extension = lowerCase(path.extension().string().substr(1));
   return fmt::format(" {} ", reader.mFileExtensions).find(" " + extension + " ") !=
@@ -80,8 +80,9 @@ Format formatOf(const Assimp::Importer& importer) {
   return {.reader = reader, .name = reader, .convention = statedBy(UpAxis::kY, "assumed")};
 }
 
-/// Listens for the one thing that a reader mentions only in its log: faces that it left out because
-/// their vertices do not exist. Sets up the library's global logger: for processes of their own.
+/// Listens for the one thing that a reader reports only in its log: faces that it dropped because
+/// their vertices do not exist. Sets up the library's global logger, so use it only in a process of
+/// its own.
 class DroppedFacesLog final : public Assimp::LogStream {
  public:
   DroppedFacesLog() {
@@ -135,14 +136,15 @@ class SceneReader {
   Format format_{};
   SourceAsset asset_;
   AskedFiles asked_;
-  /// For cutting polygons: a second's worth, and far beyond what polygons of models take.
+  /// Limit for cutting polygons: about a second's worth, and far beyond what polygons of models
+  /// take.
   static constexpr std::uint64_t kMostComparisons = 200'000'000;
   std::uint64_t comparisons_left_ = kMostComparisons;
 };
 
 std::string text(const aiString& string) { return {string.C_Str()}; }
 
-/// What the reader gets in place of the file, where it would take it otherwise.
+/// What the reader gets in place of the file, if it would misinterpret the file itself.
 Result<std::optional<ReadableGltf>> readableAs(const std::filesystem::path& path, Reach reach) {
   const std::string extension = lowerCase(path.extension().string());
   if (extension != ".glb" && extension != ".gltf") return std::nullopt;
@@ -155,14 +157,14 @@ Result<void> SceneReader::load() {
   Assimp::Importer importer;
   const Reach reach = options_.allow_outside ? Reach::kAnywhere : Reach::kNear;
   ASSIGN_OR_RETURN(auto readable, readableAs(path_, reach));
-  // The importer owns it.
+  // The importer takes ownership.
   importer.SetIOHandler(new RecordingFiles(asked_, path_, reach, std::move(readable)));
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
-  // "*N" for an embedded image, as of other formats, and not the name of a file that nobody has.
+  // Names embedded images "*N", as other formats do, instead of after files that do not exist.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_EMBEDDED_TEXTURES_LEGACY_NAMING, true);
   // No post-processing: the library's own triangulation covers the notches of concave polygons.
   const bool read = importer.ReadFile(path_.string(), 0) != nullptr;
@@ -181,7 +183,7 @@ Result<void> SceneReader::load() {
                     "it to GLB",
                     path_.extension().string(), reason.empty() ? "no reason given" : reason));
   }
-  // What is checked before goes by the name, too.
+  // The checks before this one took the format from the name, too.
   const aiImporterDesc* reader = readerOf(importer);
   if (reader != nullptr && !isForName(*reader, path_)) {
     return invalid(
@@ -195,7 +197,7 @@ Result<void> SceneReader::load() {
   format_ = formatOf(importer);
   asset_.format = format_.name;
   scene_.reset(importer.GetOrphanedScene());
-  // Of some broken files a reader makes a scene without any node.
+  // From some broken files a reader makes a scene without any node.
   if (scene_->mRootNode == nullptr) {
     return invalid("it has no scene, so nothing in it has a place; export it again");
   }
@@ -215,7 +217,8 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
   return value;
 }
 
-/// FBX: axis number and sign, and centimeters per unit; the reader applies neither.
+/// Reads what FBX states, but its reader does not apply: number and sign of the up axis, and
+/// centimeters per unit.
 AxisConvention fbxConvention(const aiScene& scene, AxisConvention convention) {
   const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
   const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
@@ -232,7 +235,7 @@ Result<Affine> SceneReader::worldFromRoot() {
   Affine file_from_root = toAffine(scene_->mRootNode->mTransformation);
   AxisConvention convention = format_.convention;
   if (format_.reader == kColladaReader) {
-    // The reader puts up axis and unit, and nothing else, into the root's transform. They are taken
+    // The reader writes up axis and unit, and nothing else, into the root's transform. Takes them
     // out again, so that an override replaces them instead of adding to them.
     const auto stated = conventionOf(file_from_root, kByFile);
     if (!stated && !(options_.up && options_.scale)) {
@@ -276,10 +279,9 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
     const aiNode* node;
     Affine world_from_node;
   };
-  // A stack of our own: hostile files nest nodes deeper than the call stack.
+  // Uses a stack of its own: hostile files nest nodes deeper than the call stack.
   std::vector<Placed> open{{scene_->mRootNode, world_from_root}};
-  // The reader of COLLADA has used up its root's transform; one that is not finite is told of
-  // later.
+  // The transform of COLLADA's root has been used up; one that is not finite is reported later.
   const aiMatrix4x4& root = scene_->mRootNode->mTransformation;
   const bool finite = std::isfinite(root.d1 + root.d2 + root.d3 + root.d4);
   if (finite && format_.reader != kColladaReader) {
@@ -302,8 +304,8 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
   return {};
 }
 
-/// With the morph targets of glTF applied as far as the mesh says. Weights of other readers are not
-/// those of the file's shape: an FBX's may be 1 whatever it states.
+/// The positions of a mesh, with glTF's morph targets applied by the weights of the mesh. Weights
+/// of other readers are not those of the file's shape: they may be 1 for an FBX whatever it states.
 std::vector<Vec3> positionsOf(const aiMesh& mesh, std::string_view reader) {
   std::vector<Vec3> positions;
   const std::size_t vertices = mesh.mVertices == nullptr ? 0 : mesh.mNumVertices;
@@ -324,13 +326,13 @@ std::vector<Vec3> positionsOf(const aiMesh& mesh, std::string_view reader) {
   return positions;
 }
 
-/// How many corners of triangles have texture coordinates that are no numbers.
+/// Number of triangle corners whose texture coordinates are not finite.
 std::size_t cornersWithoutUv(const SourceMesh& mesh) {
   if (mesh.uvs.empty()) return 0;
   std::size_t corners = 0;
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
-      // What is out of range is refused later.
+      // Vertices out of range are refused later.
       if (vertex >= mesh.uvs.size()) continue;
       const auto& [u, v] = mesh.uvs[vertex];
       if (!std::isfinite(u) || !std::isfinite(v)) ++corners;
@@ -339,8 +341,8 @@ std::size_t cornersWithoutUv(const SourceMesh& mesh) {
   return corners;
 }
 
-/// Of a pool that many meshes share, each keeps what is its own. Of a mesh with corners that do not
-/// exist, which is refused later, all stays.
+/// Drops the vertices of a shared pool that this mesh does not use. Keeps all if the mesh has
+/// corners out of range; it is refused later.
 void dropUnusedVertices(SourceMesh& mesh) {
   const std::size_t count = mesh.positions.size();
   for (const Triangle& triangle : mesh.triangles) {
@@ -405,7 +407,8 @@ void SceneReader::nameFiles() {
   for (const std::filesystem::path& file : asked_.search.absent()) {
     asset_.read.absent.push_back(nameRelativeTo(path_, file));
   }
-  // The OBJ reader looks for a namesake of the OBJ when the named MTL is missing: one warning each.
+  // If the MTL that it names is missing, the OBJ reader looks for one named like the OBJ: warns
+  // only once.
   std::filesystem::path namesake = path_;
   namesake.replace_extension(".mtl");
   std::vector<std::string>& missing = asked_.missing;
@@ -419,7 +422,7 @@ void SceneReader::nameFiles() {
         "`allow-outside`",
         nameRelativeTo(path_, file)));
   }
-  // Other readers ask for files that may be there, or say themselves that they lack.
+  // Other readers ask for optional files, or report missing ones themselves.
   if (format_.reader != kObjReader) return;
   for (const std::string& file : missing) {
     asset_.missing_materials.push_back(nameRelativeTo(path_, file));

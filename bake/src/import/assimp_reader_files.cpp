@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `content` outlives the stream, which who opens it closes.
+/// `content` must outlive the stream. The caller closes the stream.
 Assimp::IOStream* streamOf(const std::string& content) {
   return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content.data()),
                                     content.size());
@@ -30,7 +30,7 @@ Assimp::IOStream* RecordingFiles::Open(const char* file, const char* mode) {
   if (readable_ && fs::path(file).filename() == kGltfFloatsFile) {
     return streamOf(readable_->floats);
   }
-  // Readers hand over names as they stand in the file: "my%20scene.bin", "colors.mtl ".
+  // Readers pass names on as they stand in the file: "my%20scene.bin", "colors.mtl ".
   const std::string trimmed = withoutTrailingBlanks(file);
   std::vector<std::string> spellings{file};
   for (const std::string& other : {withoutUriEscapes(file), trimmed, withoutUriEscapes(trimmed)}) {

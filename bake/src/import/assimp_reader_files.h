@@ -11,25 +11,25 @@
 
 namespace galactic::bake {
 
-/// What the reader asked for, in this order, each once.
+/// The files that the reader asked for, in the order of its requests, without repetitions.
 struct AskedFiles {
   std::vector<std::string> opened;
   std::vector<std::string> missing;
-  /// Not looked for: they lie outside the asset's folder.
+  /// Files that lie outside the asset's folder, and were therefore not looked for.
   std::vector<std::string> outside;
   FileSearch search;
 };
 
-/// Opens files for the reader and remembers which, because the reader does not tell. Nothing but
-/// regular files: opening a pipe would wait for its writer.
+/// Opens files for the reader and records which, because the reader does not report them. Opens
+/// only regular files: opening a pipe would wait for its writer.
 class RecordingFiles final : public Assimp::DefaultIOSystem {
  public:
-  /// Nothing is opened outside the folder of `main_input` that `reach` does not allow; `readable`
-  /// is what the reader gets in place of `main_input`.
+  /// Opens nothing outside the folder of `main_input` unless `reach` allows it. The reader gets
+  /// `readable`, if any, in place of `main_input`.
   RecordingFiles(AskedFiles& asked, const std::filesystem::path& main_input, Reach reach,
                  std::optional<ReadableGltf> readable);
 
-  /// The library's own opens the file to see whether it is there.
+  /// Overridden because the library's version opens the file to see whether it exists.
   bool Exists(const char* file) const override { return isPlainFile(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override;
 
@@ -40,7 +40,7 @@ class RecordingFiles final : public Assimp::DefaultIOSystem {
 
   AskedFiles& asked_;
   std::string main_input_;
-  /// Empty: anything is near.
+  /// Files below this folder may be opened; if empty, all files may.
   std::filesystem::path folder_;
   std::optional<ReadableGltf> readable_;
 };

@@ -19,8 +19,9 @@ std::string text(const aiString& string) { return {string.C_Str()}; }
 
 float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
 
-// The reader of glTF delivers base colors as diffuse ones, too, but for materials with
-// KHR_materials_pbrSpecularGlossiness: there the diffuse ones are that extension's, which counts.
+// The glTF reader delivers base colors as diffuse ones as well, except for materials with
+// KHR_materials_pbrSpecularGlossiness: there the diffuse ones are those of the extension, which
+// take precedence.
 
 aiColor4D colorOf(const aiMaterial& material, std::string_view reader) {
   aiColor4D color(1, 1, 1, 1);
@@ -31,14 +32,14 @@ aiColor4D colorOf(const aiMaterial& material, std::string_view reader) {
   return color;
 }
 
-/// The first of them that a material has is its color's.
+/// A material's color texture is the first of these that it has.
 std::pair<aiTextureType, aiTextureType> colorTexturesOf(std::string_view reader) {
   if (reader == kGltf2Reader) return {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR};
   return {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
 }
 
-/// Whether `color` cannot be meant to be multiplied with a texture or with colors of vertices:
-/// black, or what the readers of OBJ and OFF put where the file states no color.
+/// Whether `color` cannot be meant as a factor for a texture or vertex colors: it is black, or what
+/// the readers of OBJ and OFF set if the file states no color.
 bool isNoFactor(const aiColor4D& color, std::string_view reader) {
   if (reader == kGltf2Reader) return false;
   constexpr float kUnstated = 0.6F;
@@ -48,13 +49,14 @@ bool isNoFactor(const aiColor4D& color, std::string_view reader) {
   return all(0) || ((reader == kObjReader || reader == kOffReader) && all(kUnstated));
 }
 
-/// Whether the colors of vertices are those on a screen: scanners and viewers write them so. glTF
-/// says that they are linear.
+/// Whether vertex colors are those on a screen (sRGB), as scanners and viewers write them. In glTF
+/// they are linear.
 bool storesScreenColors(std::string_view reader) {
   return reader == kPlyReader || reader == kObjReader || reader == kOffReader;
 }
 
-/// Colors on a screen, 0 to 1 or, where some are larger, bytes, as linear ones.
+/// Makes colors linear that are those on a screen, from 0 to 1 or, if some are larger, from 0 to
+/// 255.
 void makeLinear(std::vector<std::array<float, 4>>& colors) {
   constexpr float kOneAndRounding = 1.01F;
   const bool are_bytes = std::ranges::any_of(
@@ -65,7 +67,7 @@ void makeLinear(std::vector<std::array<float, 4>>& colors) {
       channel =
           static_cast<float>(srgbDecoded(std::clamp(static_cast<double>(channel) / one, 0.0, 1.0)));
     }
-    // Files without alpha get a 1 from their readers, beside bytes, too.
+    // For files without alpha, readers set 1, even where the colors are bytes.
     if (color[3] > kOneAndRounding) color[3] /= 255;
   }
 }
@@ -103,8 +105,9 @@ std::vector<std::array<float, 4>> SceneLooks::colorsOf(const aiMesh& mesh) const
   return colors;
 }
 
-/// What a material's texture is, as SourceMaterial has it. Some FBX and COLLADA files embed an
-/// image under one name and use it under the same: the embedded one is meant. glTF says so itself.
+/// A material's texture, named as in SourceMaterial. Some FBX and COLLADA files embed an image and
+/// refer to it by its file name; this finds the embedded one. glTF refers to embedded images
+/// itself.
 std::string SceneLooks::imageOf(const aiString& texture) const {
   std::string name = text(texture);
   if (name.empty() || name.starts_with('*') || reader_ == kGltf2Reader) return name;
@@ -112,8 +115,9 @@ std::string SceneLooks::imageOf(const aiString& texture) const {
   return embedded < 0 ? name : fmt::format("*{}", embedded);
 }
 
-/// glTF says what its alpha means. Elsewhere a factor strictly between the ends counts: files do
-/// not agree which end is opaque, and nobody ships invisible surfaces.
+/// glTF states what its alpha means. For other formats a factor counts only if it is strictly
+/// between 0 and 1: files do not agree which end is opaque, and nobody publishes invisible
+/// surfaces.
 void SceneLooks::convertAlpha(const aiMaterial& material, SourceMaterial& converted,
                               std::vector<std::string>& warnings) const {
   aiString string;
@@ -163,7 +167,8 @@ std::vector<SourceMaterial> SceneLooks::materials(std::vector<std::string>& warn
         !converted.base_color_texture.empty() || has_vertex_colors_[materials.size() - 1];
     if (is_factor && isNoFactor(color, reader_)) converted.base_color = {1, 1, 1, 1};
     convertAlpha(*material, converted, warnings);
-    // Other formats do not say which triangles show one side only: no surface may be lost.
+    // Other formats do not say which triangles are one-sided: show both sides, so that no surface
+    // is lost.
     bool two_sided = reader_ != kGltf2Reader;
     if (!two_sided) material->Get(AI_MATKEY_TWOSIDED, two_sided);
     converted.two_sided = two_sided;

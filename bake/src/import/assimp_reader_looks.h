@@ -13,24 +13,24 @@ struct aiString;
 
 namespace galactic::bake {
 
-/// Readers of the library, by its names, that deliver looks in ways of their own.
+/// The library's names of the readers that deliver materials or colors in ways of their own.
 inline constexpr std::string_view kGltf2Reader = "glTF2 Importer";
 inline constexpr std::string_view kObjReader = "Wavefront Object Importer";
 inline constexpr std::string_view kOffReader = "OFF Importer";
 inline constexpr std::string_view kPlyReader = "Stanford Polygon Library (PLY) Importer";
 
-/// What the surfaces look like of a scene that the library has read: its materials and images, and
-/// the texture coordinates and colors of its meshes.
+/// The looks of a scene that the library has read: its materials and images, and the texture
+/// coordinates and colors of its meshes.
 class SceneLooks {
  public:
-  /// `reader`: the library's name of the one that made `scene`, which has to live as long.
+  /// `reader` is the library's name of the reader that made `scene`; `scene` must outlive this.
   SceneLooks(const aiScene& scene, std::string_view reader);
 
-  /// One for each vertex of a mesh of the scene, or none; as SourceMesh has them.
+  /// One value for each vertex of a mesh of the scene, or none at all; as in SourceMesh.
   [[nodiscard]] std::vector<std::array<float, 2>> uvsOf(const aiMesh& mesh) const;
   [[nodiscard]] std::vector<std::array<float, 4>> colorsOf(const aiMesh& mesh) const;
 
-  /// What is not used of them is told in `warnings`.
+  /// Adds to `warnings` what is not used of them.
   [[nodiscard]] std::vector<SourceMaterial> materials(std::vector<std::string>& warnings) const;
   [[nodiscard]] std::vector<EmbeddedTexture> textures(std::vector<std::string>& warnings) const;
 
@@ -41,7 +41,7 @@ class SceneLooks {
 
   const aiScene& scene_;
   std::string_view reader_;
-  /// Whether some mesh of the material has colors of its own, for each material.
+  /// For each material, whether any of its meshes has vertex colors.
   std::vector<bool> has_vertex_colors_;
 };
 

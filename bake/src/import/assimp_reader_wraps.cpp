@@ -11,7 +11,8 @@
 namespace galactic::bake {
 namespace {
 
-/// So far beyond an edge nothing shows: a texel of the largest textures that are baked by default.
+/// Reaching this far beyond an edge is invisible: it is one texel of the largest textures that are
+/// baked by default.
 constexpr float kUnseen = 1.0F / 512;
 
 bool repeats(const aiMaterial& material, const char* key, aiTextureType type) {
@@ -20,7 +21,7 @@ bool repeats(const aiMaterial& material, const char* key, aiTextureType type) {
   return mode == aiTextureMapMode_Wrap;
 }
 
-/// Whether the color texture repeats along u and v; so does the one that a material lacks.
+/// Whether the color texture repeats along u and along v; true if the material has no texture.
 std::array<bool, 2> repeatsAlong(const aiMaterial& material) {
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
     if (material.GetTextureCount(type) == 0) continue;
@@ -30,7 +31,7 @@ std::array<bool, 2> repeatsAlong(const aiMaterial& material) {
   return {true, true};
 }
 
-/// Whether a triangle's corner lies where its texture would have to repeat, and does not.
+/// Whether a triangle has a corner where its texture would have to repeat, but does not.
 bool reachesBeyond(const aiMesh& mesh, const std::array<bool, 2>& repeat) {
   if (!mesh.HasTextureCoords(0) || mesh.mFaces == nullptr) return false;
   const auto beyond = [](float along) { return along < -kUnseen || along > 1 + kUnseen; };

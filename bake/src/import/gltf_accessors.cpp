@@ -56,7 +56,7 @@ double numberAt(const std::byte* at) {
   return static_cast<double>(value);
 }
 
-/// One component; `normalized` integers stand for 0 to 1, or -1 to 1.
+/// The value of one component; `normalized` integers become 0 to 1, or -1 to 1.
 double componentAt(const std::byte* at, std::uint64_t type, bool normalized) {
   const auto share = [normalized](double value, double one) {
     return normalized ? std::max(value / one, -1.0) : value;
@@ -86,7 +86,7 @@ std::uint64_t componentType(const Json& owner) {
   return gltfWhole(owner, "componentType").value_or(0);
 }
 
-/// The first numbers of an element of `accessor`.
+/// Copies the first numbers of an element of `accessor`.
 void copyElement(const std::byte* from, const Json& accessor, std::span<double> to) {
   const std::uint64_t type = componentType(accessor);
   const auto member = accessor.find("normalized");

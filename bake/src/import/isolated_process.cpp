@@ -70,7 +70,7 @@ class Descriptor {
   int value_;
 };
 
-/// One word that parent and child share.
+/// A word of memory that parent and child share.
 class SharedStage {
  public:
   SharedStage()
@@ -96,8 +96,8 @@ class SharedStage {
   void* page_;
 };
 
-/// The child's end of the pipe: unlike a file in memory, what goes through it counts against no
-/// limit of file sizes.
+/// The child's end of the pipe. Unlike with a file in memory, what goes through a pipe counts
+/// against no limit on file sizes.
 class PipeChannel final : public ProcessChannel {
  public:
   PipeChannel(int pipe_end, std::uint64_t limit, SharedStage& stage)
@@ -139,7 +139,7 @@ class PipeChannel final : public ProcessChannel {
   std::vector<std::byte> buffer_;
 };
 
-/// What came out of the pipe so far, in memory that grows.
+/// The bytes received from the pipe so far, in memory that grows.
 class ReceivedBytes {
  public:
   ReceivedBytes() = default;
@@ -151,7 +151,7 @@ class ReceivedBytes {
   ReceivedBytes(ReceivedBytes&&) = delete;
   ReceivedBytes& operator=(ReceivedBytes&&) = delete;
 
-  /// Takes what is there: how many bytes, 0 at the end, or -1 with errno.
+  /// Receives what the pipe holds: returns the number of bytes, 0 at the end, or -1 with errno.
   ssize_t receive(int pipe_end) {
     if (size_ == capacity_ && !grow()) return -1;
     const ssize_t count =
@@ -162,7 +162,7 @@ class ReceivedBytes {
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// Hands the bytes over.
+  /// Passes the ownership of the bytes on.
   ProcessOutput take() {
     if (capacity_ == 0) return ProcessOutput({});
     const std::size_t page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
@@ -213,32 +213,32 @@ void limitResource(Resource resource, std::uint64_t value, std::uint64_t grace =
   ::setrlimit(resource, &limit);
 }
 
-/// Makes the child harmless: it dies with its parent, handles no signal, holds no descriptor but
-/// its own and prints nothing.
+/// Makes the child harmless: it dies with its parent, handles no signals, holds no descriptor
+/// except `kept`, and prints nothing.
 void settleChild(int kept, pid_t parent, const ProcessLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // A parent that ended before that sends no signal any more.
+  // If the parent ended before this call, no signal will come.
   if (::getppid() != parent) ::_exit(kExitException);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGALRM, SIGXCPU,
                            SIGPIPE, SIGUSR1, SIGUSR2}) {
     std::signal(signal, SIG_DFL);
   }
-  // Terminals and schedulers tell all of a group to end; the parent finishes what it has begun.
+  // Terminals and schedulers signal a whole process group; the parent finishes what it has begun.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (const int stream : {0, 1, 2}) ::dup2(nowhere, stream);
-  // Also other children's pipes, so that nobody waits for this child by mistake.
+  // Closes other children's pipes, too, so that nobody waits for this child by mistake.
   if (kept > 3) ::close_range(3, static_cast<unsigned>(kept) - 1, 0);
   ::close_range(static_cast<unsigned>(kept) + 1, ~0U, 0);
 
   limitResource(RLIMIT_CORE, 0);
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(limits.wall_clock).count();
-  // Behind the wall clock's limit, which gives the clearer message.
+  // Later than the wall clock's limit, which gives a clearer message.
   constexpr std::int64_t kGraceSeconds = 5;
-  // At the soft limit comes SIGXCPU, at the hard one SIGKILL, which says nothing of the reason.
+  // The soft limit sends SIGXCPU, the hard one SIGKILL, which says nothing about the reason.
   limitResource(RLIMIT_CPU, static_cast<std::uint64_t>(seconds + kGraceSeconds), kGraceSeconds);
   if (!kUnderSanitizer) {
     const std::uint64_t now = processBytes(::getpid(), 0);
@@ -263,7 +263,8 @@ void settleChild(int kept, pid_t parent, const ProcessLimits& limits) {
   ::_exit(kExitDelivered);
 }
 
-/// Stands in for the limit of the address space, which sanitizers use up themselves.
+/// Watches the child's memory in place of a limit on its address space, which sanitizers use up
+/// themselves.
 class MemoryWatch {
  public:
   explicit MemoryWatch(const ProcessLimits& limits) {
@@ -278,8 +279,8 @@ class MemoryWatch {
   std::uint64_t allowed_ = 0;
 };
 
-/// Receives what the child sends until it has closed its end of the pipe. Returns why it had to be
-/// killed, if so.
+/// Receives what the child sends until it closes its end of the pipe. Returns the reason if it must
+/// be killed.
 std::optional<ProcessFailure> superviseChild(pid_t child, int pipe_end, const ProcessLimits& limits,
                                              ReceivedBytes& received) {
   const auto killed_for = [](ProcessEnd end) {
@@ -298,7 +299,7 @@ std::optional<ProcessFailure> superviseChild(pid_t child, int pipe_end, const Pr
     if (done > 0) {
       const ssize_t count = received.receive(pipe_end);
       if (count == 0) return std::nullopt;
-      // The child keeps to it by itself, unless its input has got the better of it.
+      // The child keeps to this limit by itself, unless its input has taken control of it.
       if (received.size() > limits.memory) return killed_for(ProcessEnd::kMemoryLimit);
       done = count < 0 ? -1 : 1;
     }
@@ -314,7 +315,7 @@ int reapChild(pid_t child) {
   return status;
 }
 
-/// Nothing that the child did: by the machine, or by somebody.
+/// For a child that was killed by the machine or by somebody, and not for anything it did.
 [[noreturn]] void throwKilled() {
   throw ErrorException(
       {ErrorCode::kUnsupported, "a process that reads files",
@@ -357,7 +358,7 @@ tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work
   if (!stage.valid() || ::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started();
   const Descriptor read_end(ends[0]);
   Descriptor write_end(ends[1]);
-  // Fewer turns between the two; without it they are just more.
+  // A larger pipe saves switches between the processes; if this fails, there are just more of them.
   (void)::fcntl(write_end.get(), F_SETPIPE_SZ, kPipeBytes);
 
   const pid_t parent = ::getpid();

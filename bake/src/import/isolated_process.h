@@ -8,25 +8,25 @@
 
 namespace galactic::bake {
 
-/// What a child process may use.
+/// The resources that a child process may use.
 struct ProcessLimits {
   std::chrono::milliseconds wall_clock{600'000};
   /// Bytes of memory beyond what the parent had when the child started.
   std::uint64_t memory = std::uint64_t{16} << 30U;
 };
 
-/// How a child process failed to deliver.
+/// Why a child process did not deliver.
 enum class ProcessEnd { kNotStarted, kCrashed, kTimeLimit, kMemoryLimit, kFailed };
 
 struct ProcessFailure {
   ProcessEnd end = ProcessEnd::kNotStarted;
-  /// Signal that ended the child (kCrashed), errno (kNotStarted) or exit code (kFailed).
+  /// The signal that ended the child (kCrashed), errno (kNotStarted) or the exit code (kFailed).
   int number = 0;
   /// The last stage that the child announced.
   std::uint32_t stage = 0;
 };
 
-/// What a child wrote, in pages of its own; movable, not copyable.
+/// The bytes that a child wrote, in memory pages of their own; movable, not copyable.
 class ProcessOutput {
  public:
   explicit ProcessOutput(std::span<const std::byte> mapped) : bytes_(mapped) {}
@@ -48,25 +48,26 @@ class ProcessChannel {
   virtual ~ProcessChannel() = default;
   /// Appends to the output.
   virtual void write(std::span<const std::byte> bytes) = 0;
-  /// Announces what the child does next; the parent learns it even when the child crashes.
+  /// Announces what the child does next; the parent learns of it even if the child crashes.
   virtual void enterStage(std::uint32_t stage) = 0;
 };
 
 using IsolatedWork = std::function<void(ProcessChannel&)>;
 
-/// Runs `work` in a forked child and returns what it wrote, so that a crash, an endless loop or a
-/// memory hog costs an error instead of this process. The child's standard streams go nowhere, and
-/// it leaves without running destructors or exit handlers. `work` must use no other thread and no
-/// lock that another thread of the parent may hold (malloc is safe with glibc). Thread-safe.
-/// Throws ErrorException (kUnsupported) where somebody else killed the child, as a system does that
-/// runs out of memory: that says nothing of what was read.
-/// Sanitizers reserve terabytes of addresses: under them the parent watches the child's resident
-/// memory instead of limiting its address space.
+/// Runs `work` in a forked child and returns what it wrote, so that a crash, an endless loop or
+/// excessive use of memory causes an error instead of taking this process down. The child's
+/// standard streams are /dev/null, and it exits without running destructors or exit handlers.
+/// `work` must use no other thread and no lock that another thread of the parent may hold (malloc
+/// is safe with glibc). Thread-safe.
+/// Throws ErrorException (kUnsupported) if somebody else killed the child, as the system does when
+/// it runs out of memory: this says nothing about the file being read.
+/// Sanitizers reserve terabytes of address space: under them the parent watches the child's
+/// resident memory instead of limiting its address space.
 [[nodiscard]] tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work,
                                                                       const ProcessLimits& limits);
 
-/// Bytes that this process may map (RLIMIT_AS): where they are fewer than a child's limit, it is
-/// they that it ran into.
+/// Bytes that this process may map (RLIMIT_AS). If this is less than the child's limit, it is the
+/// limit that the child ran into.
 [[nodiscard]] std::uint64_t ownMemoryLimit();
 
 }  // namespace galactic::bake

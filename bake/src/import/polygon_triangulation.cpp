@@ -40,7 +40,7 @@ std::array<double, 3> newellNormal(std::span<const std::uint32_t> corners,
   return normal;
 }
 
-/// The polygon seen from the side its main normal axis points to: counter-clockwise.
+/// The polygon seen from the side that its main normal axis points to, hence counter-clockwise.
 std::vector<FlatPoint> flattened(std::span<const std::uint32_t> corners,
                                  std::span<const Vec3> positions) {
   const auto normal = newellNormal(corners, positions);
@@ -61,7 +61,7 @@ std::vector<FlatPoint> flattened(std::span<const std::uint32_t> corners,
   return points;
 }
 
-/// What is left of a polygon while its ears are cut off.
+/// What is left of a polygon while its ears are clipped.
 class EarClipper {
  public:
   EarClipper(std::vector<FlatPoint> points, std::uint64_t& comparisons_left)
@@ -69,8 +69,8 @@ class EarClipper {
     for (std::size_t i = 0; i < points_.size(); ++i) left_.push_back(i);
   }
 
-  /// Calls `cut` with the three corners of each ear, in the polygon's order. False when it takes
-  /// more comparisons than are left.
+  /// Calls `cut` with the three corners of each ear, in the polygon's order. Returns false if this
+  /// takes more comparisons than are left.
   template <class Cut>
   bool run(const Cut& cut) {
     std::size_t at = 0;
@@ -80,7 +80,8 @@ class EarClipper {
       const std::size_t before = left_[(at + n - 1) % n];
       const std::size_t here = left_[at % n];
       const std::size_t after = left_[(at + 1) % n];
-      // When a whole round finds no ear the polygon crosses itself: cut anywhere, to end.
+      // If a whole round finds no ear, the polygon crosses itself: cut anywhere, so that the loop
+      // ends.
       if (comparisons_left_ == 0) return false;
       if (failures < n && !isEar(before, here, after)) {
         ++failures;

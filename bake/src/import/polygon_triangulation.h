@@ -7,13 +7,14 @@
 
 namespace galactic::bake {
 
-/// Appends the triangles of a simple polygon (`corners` index `positions`; convex or concave; it
-/// may be slightly out of plane) to `triangles`, with the polygon's winding: corners.size() - 2 of
-/// them by ear clipping. A polygon that crosses itself gets as many triangles, whose union is then
-/// a matter of taste. Corners out of range make a fan, for the caller's checks to find. The number
-/// of comparisons between corners is quadratic at best and cubic at worst; polygons of meshes are
-/// small. They are taken from `comparisons_left`: false, and an unfinished polygon, where it does
-/// not suffice.
+/// Appends the triangles of a simple polygon to `triangles`, with the polygon's winding. `corners`
+/// index `positions`; the polygon may be convex or concave, and slightly out of plane. Ear clipping
+/// makes corners.size() - 2 triangles. A polygon that crosses itself gets the same number, but
+/// there is no right answer to what they should cover. Corners out of range make a fan, and the
+/// caller's checks find them.
+/// The number of comparisons between corners is quadratic at best and cubic at worst; polygons of
+/// meshes are small. It is subtracted from `comparisons_left`; if that runs out, the polygon stays
+/// unfinished and the function returns false.
 [[nodiscard]] bool triangulatePolygon(std::span<const std::uint32_t> corners,
                                       std::span<const Vec3> positions,
                                       std::uint64_t& comparisons_left,

@@ -23,7 +23,7 @@ using Bytes = std::span<const std::byte>;
 constexpr std::uint64_t kTexelCoordinates = 2;
 constexpr std::uint64_t kSpaceCoordinates = 3;
 
-/// The object at `pointer` below `parent`; null where there is none.
+/// The object at `pointer` below `parent`; null if there is none.
 const Json* objectAt(const Json& parent, const char* pointer) {
   const Json::json_pointer at(pointer);
   if (!parent.contains(at)) return nullptr;
@@ -31,17 +31,17 @@ const Json* objectAt(const Json& parent, const char* pointer) {
   return found.is_object() ? &found : nullptr;
 }
 
-/// Rows of the transform from the coordinates of a set to those of the image.
+/// The rows of the transform from texture coordinates of the file to those of the image.
 using UvTransform = std::array<double, 6>;
 constexpr UvTransform kUnmoved{1, 0, 0, 0, 1, 0};
 
-/// Where a texture is drawn.
+/// How a texture is mapped.
 struct Mapping {
   std::uint64_t set = 0;
   UvTransform image_from_uv = kUnmoved;
 };
 
-/// The two numbers of a list; `otherwise` where they are none.
+/// The two numbers of the list `key`; `otherwise` if it is not such a list.
 std::array<double, 2> pairOf(const Json& object, const char* key,
                              const std::array<double, 2>& otherwise) {
   const auto list = object.find(key);
@@ -51,8 +51,8 @@ std::array<double, 2> pairOf(const Json& object, const char* key,
   return {(*list)[0].get<double>(), (*list)[1].get<double>()};
 }
 
-/// KHR_texture_transform: scaled, then turned, then moved. Positive angles turn u towards -v, which
-/// is up: https://github.com/KhronosGroup/glTF/issues/1563.
+/// The transform of KHR_texture_transform: scales, then rotates, then moves. Positive angles turn u
+/// towards -v, which is up: https://github.com/KhronosGroup/glTF/issues/1563.
 UvTransform transformOf(const Json& extension) {
   const auto offset = pairOf(extension, "offset", {0, 0});
   const auto scale = pairOf(extension, "scale", {1, 1});
@@ -65,7 +65,7 @@ UvTransform transformOf(const Json& extension) {
           -sine * scale[0],  cosine * scale[1], offset[1]};
 }
 
-/// How the texture lies that a primitive's color comes from.
+/// The mapping of the texture that a primitive's color comes from.
 Mapping mappingOf(const Json& document, const Json& primitive) {
   const Json& materials = gltfList(document, "materials");
   const auto material = gltfWhole(primitive, "material");
@@ -84,13 +84,13 @@ Mapping mappingOf(const Json& document, const Json& primitive) {
   return mapping;
 }
 
-/// Puts accessors that the reader takes rightly in the place of others.
+/// Replaces accessors of primitives with ones that the reader interprets correctly.
 class PrimitiveWriter {
  public:
   PrimitiveWriter(Json& document, GltfAccessors& accessors)
       : document_(document), accessors_(accessors) {}
 
-  /// Whether any primitive got others than it had.
+  /// Returns whether any accessor was replaced.
   Result<bool> run() {
     bool changes = false;
     if (!document_.contains("meshes") || !document_["meshes"].is_array()) return false;
@@ -121,7 +121,7 @@ class PrimitiveWriter {
     return changes;
   }
 
-  /// TEXCOORD_0 becomes what the color texture is drawn with.
+  /// Makes TEXCOORD_0 the coordinates that the color texture is drawn with.
   Result<bool> placeTexture(const Json& primitive, Json& attributes) {
     const Mapping mapping = mappingOf(document_, primitive);
     const std::string named = "TEXCOORD_" + std::to_string(mapping.set);
@@ -133,7 +133,7 @@ class PrimitiveWriter {
     return true;
   }
 
-  /// The accessor of the moved coordinates; none where the one that is named cannot be read.
+  /// An accessor of the transformed coordinates; none if `source` cannot be read.
   Result<std::optional<std::uint64_t>> drawnFrom(std::uint64_t source, const UvTransform& m) {
     if (accessors_.isFloat(source) && m == kUnmoved) return source;
     const auto made = made_.find({source, m});
@@ -151,8 +151,8 @@ class PrimitiveWriter {
     return drawn;
   }
 
-  /// KHR_mesh_quantization: positions in integers become floats. Directions in integers go, as
-  /// nobody asks for them.
+  /// Undoes KHR_mesh_quantization: turns integer positions into floats, and drops integer
+  /// directions, which nothing uses.
   Result<bool> makeFloats(Json& attributes) {
     bool changes = false;
     for (const char* name : {"POSITION", "NORMAL", "TANGENT"}) {
@@ -183,13 +183,14 @@ class PrimitiveWriter {
 
   Json& document_;
   GltfAccessors& accessors_;
-  /// Accessors of moved coordinates, by what they were made of.
+  /// Accessors of transformed coordinates, by their source and transform.
   std::map<std::pair<std::uint64_t, UvTransform>, std::uint64_t> made_;
-  /// Those of positions, likewise.
+  /// Accessors of positions as floats, by their source.
   std::map<std::uint64_t, std::optional<std::uint64_t>> floats_;
 };
 
-/// Meshes stand where their nodes are, whatever bones say; whether there were any.
+/// Removes skins, so that meshes stand where their nodes are, whatever the bones say. Returns
+/// whether there were any.
 bool dropSkins(Json& document) {
   if (document.erase("skins") == 0) return false;
   if (!document.contains("nodes")) return true;
@@ -199,7 +200,7 @@ bool dropSkins(Json& document) {
   return true;
 }
 
-/// The file with another JSON.
+/// The file with its JSON replaced by `json`.
 std::string withJson(Bytes file, std::string json) {
   if (!isGlb(file)) return json;
   constexpr std::size_t kAlignment = 4;
@@ -218,7 +219,7 @@ std::string withJson(Bytes file, std::string json) {
   return glb;
 }
 
-/// Whether the JSON has anything that a reader may take otherwise: a look at the text is cheap.
+/// Whether the JSON has anything that a reader may misinterpret; searching the text is cheap.
 bool mayDiffer(Bytes file) {
   const Bytes json = gltfJson(file);
   const std::string_view text(reinterpret_cast<const char*>(json.data()), json.size());

@@ -11,25 +11,28 @@
 
 namespace galactic::bake {
 
-/// What a reader gets in place of a glTF file.
+/// What the reader gets in place of a glTF file.
 struct ReadableGltf {
-  /// In place of the file.
+  /// Replaces the file itself.
   std::string file;
-  /// In place of kGltfFloatsFile, which lies beside it for the reader alone.
+  /// Content of kGltfFloatsFile, which only the reader sees beside the file.
   std::string floats;
 };
 
 inline constexpr std::string_view kGltfFloatsFile = "galactic-floats.bin";
 
-/// The glTF 2.0 file `path` (its bytes are `file`) without what readers take otherwise than it is
-/// meant. Every primitive's TEXCOORD_0 is where its color texture is drawn: the set that the
-/// material names (`texCoord`), moved as KHR_texture_transform says. Positions and texture
-/// coordinates in integers, also those of KHR_mesh_quantization, are floats. There are no skins:
-/// they may lack their inverseBindMatrices, at which the reader crashes. None where all is so
-/// already, or where the file is none that such a reader takes. Other buffers are looked for in the
-/// file's folder, as far as `reach` allows; what names one that is not there stays, so that the
-/// reader tells. `file` has passed checkGltfRanges. Fails with kInvalidInput where an accessor's
-/// elements are not in its buffer, or sparse ones not in the accessor.
+/// The glTF 2.0 file `path`, whose bytes are `file`, rewritten so that readers do not misinterpret
+/// it:
+/// - TEXCOORD_0 of each primitive is what its color texture is drawn with: the set that the
+///   material names (`texCoord`), transformed by KHR_texture_transform.
+/// - Positions and texture coordinates in integers, including those of KHR_mesh_quantization,
+///   become floats.
+/// - Skins are removed: the reader crashes if they lack inverseBindMatrices.
+/// None if nothing needs to change, or if the file is not one for such a reader. Looks for other
+/// buffers in the file's folder, as far as `reach` allows; references to buffers that do not exist
+/// stay, so that the reader reports them. `file` must have passed checkGltfRanges. Fails with
+/// kInvalidInput if an accessor's elements are not in its buffer, or sparse elements not in the
+/// accessor.
 [[nodiscard]] Result<std::optional<ReadableGltf>> readableGltf(const std::filesystem::path& path,
                                                                std::span<const std::byte> file,
                                                                Reach reach);

@@ -40,7 +40,7 @@ std::string withForwardSlashes(std::string path) {
   return path;
 }
 
-/// The file that `reference` means, if it is there.
+/// The file that `reference` means, if it exists.
 std::optional<fs::path> findReference(const fs::path& folder, std::string reference, Reach reach,
                                       FileSearch& search) {
   constexpr std::string_view kFileScheme = "file://";
@@ -54,15 +54,15 @@ std::optional<fs::path> findReference(const fs::path& folder, std::string refere
     if (search.findsFile(folder / spelling)) return folder / spelling;
   }
   const fs::path name = fs::path(spellings.back()).filename();
-  // As Gazebo's models have them: meshes/model.obj, materials/textures/texture.png.
+  // Gazebo's models have meshes/model.obj and materials/textures/texture.png.
   for (const fs::path& place : {folder, folder / ".." / "materials" / "textures"}) {
     if (search.findsFile(place / name)) return place / name;
   }
   return std::nullopt;
 }
 
-/// The image that belongs to a mesh by its name: that of the mesh or, as Google Scanned Objects
-/// have it, "texture"; beside it, or where Gazebo's models have theirs.
+/// The image that belongs to a mesh by its name: named like the mesh or, as in Google Scanned
+/// Objects, "texture"; beside the mesh, or where Gazebo's models have their textures.
 std::optional<fs::path> namesakeOf(const fs::path& main_input, FileSearch& search) {
   const fs::path folder = main_input.parent_path();
   for (const fs::path& place : {folder, folder / ".." / "materials" / "textures"}) {
@@ -76,7 +76,7 @@ std::optional<fs::path> namesakeOf(const fs::path& main_input, FileSearch& searc
   return std::nullopt;
 }
 
-/// How many textures the materials name that are files.
+/// Number of different texture files that the materials name.
 std::size_t namedTextures(const SourceAsset& asset) {
   std::set<std::string_view> names;
   for (const SourceMaterial& material : asset.materials) {
@@ -91,7 +91,8 @@ void noteMissing(SourceAsset& asset, const std::string& sentence) {
   asset.warnings.push_back(sentence);
 }
 
-/// What to draw for the only texture, which is missing: the mesh's namesake. Says so in a warning.
+/// A substitute for the only texture, which is missing: the mesh's namesake. Adds a warning about
+/// it.
 std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset& asset,
                                       const fs::path& main_input, FileSearch& search) {
   auto namesake = namesakeOf(main_input, search);
@@ -101,14 +102,14 @@ std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset&
   return namesake;
 }
 
-/// Gives an OBJ without MTL the mesh's namesake, where there is one; says whether it did. Meshes
-/// without texture coordinates stay as they are.
+/// Gives an OBJ without MTL the mesh's namesake as its texture, if there is one; returns whether it
+/// did. Meshes without texture coordinates stay as they are.
 bool paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearch& search) {
   const bool is_obj = asset.format == "Wavefront OBJ";
   const bool has_coordinates =
       std::any_of(asset.meshes.begin(), asset.meshes.end(),
                   [](const SourceMesh& mesh) { return !mesh.uvs.empty(); });
-  // An MTL that was read, whatever its name, states what colors there are.
+  // Any MTL that was read, whatever its name, states the colors.
   const bool has_mtl = asset.read.files.size() > 1;
   if (!is_obj || has_mtl || !has_coordinates) return false;
   const auto namesake = namesakeOf(main_input, search);
@@ -116,7 +117,7 @@ bool paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearc
   const std::string name = nameRelativeTo(main_input, *namesake);
   for (SourceMaterial& material : asset.materials) {
     material.base_color_texture = name;
-    // What the reader takes for a color that nobody states is no factor.
+    // The color that the reader sets if the file states none is not a factor.
     material.base_color = {1, 1, 1, material.base_color[3]};
   }
   asset.read.files.push_back({.name = name});

@@ -17,8 +17,8 @@ namespace galactic::bake {
 /// Receives consecutive pieces of a transfer.
 using TransferSink = std::function<void(std::span<const std::byte>)>;
 
-/// Values that are their bytes. What a view or a pointer points to is elsewhere, and not any byte
-/// says whether an optional value is there.
+/// Types whose values can be copied as bytes. Excludes views and pointers, since what they point to
+/// is elsewhere, and optional values, where no byte is sure to say whether there is a value.
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
                 !std::is_same_v<T, std::string_view> && !requires(const T& value) {
@@ -39,7 +39,7 @@ void transferFields(Archive& archive, Is<Error> auto& error) {
   archive(error.code, error.where, error.message);
 }
 
-/// Writes values as bytes for another or a later process of this same program. A type that is
+/// Writes values as bytes for another process, or a later run, of this same program. A type that is
 /// neither plain nor a list nor optional needs a function template `transferFields(archive, value)`
 /// in galactic::bake, which calls the archive with its fields; the archive is a writer or a reader.
 class TransferWriter {
@@ -79,7 +79,7 @@ class TransferWriter {
   const TransferSink& sink_;
 };
 
-/// What a TransferWriter writes of `fields`.
+/// The bytes that a TransferWriter writes for `fields`.
 template <class... Fields>
 [[nodiscard]] std::string bytesOf(const Fields&... fields) {
   std::string bytes;
@@ -90,7 +90,7 @@ template <class... Fields>
   return bytes;
 }
 
-/// Reads what a TransferWriter wrote; nothing beyond the given bytes.
+/// Reads what a TransferWriter wrote; never reads beyond the given bytes.
 class TransferReader {
  public:
   explicit TransferReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -133,7 +133,7 @@ class TransferReader {
       list.resize(static_cast<std::size_t>(size));
       take(list.data(), list.size() * sizeof(Element));
     } else {
-      // An element takes at least one byte, so a false size ends with the input.
+      // Each element takes at least one byte, so a wrong size ends with the input.
       for (std::uint64_t i = 0; i < size && good_; ++i) get(list.emplace_back());
     }
   }

@@ -17,10 +17,10 @@
 namespace galactic::bake {
 namespace {
 
-/// More triangles than this are refused: the geometry alone would take several GiB.
+/// The greatest number of triangles: the geometry alone takes several GiB.
 constexpr std::uint64_t kMaxTriangles = std::uint64_t{1} << 27U;
-/// What a triangle takes at least until it is placed and cleaned, and after that until it is in a
-/// tree: as measured on up to 1.8 million of them.
+/// The least memory that a triangle takes until it is placed and cleaned, and then until it is in a
+/// tree; measured with up to 1.8 million triangles.
 constexpr double kBytesToPlace = 40;
 constexpr double kBytesToBuild = 90;
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -31,7 +31,7 @@ Result<void> checkTriangles(std::uint64_t triangles, double bytes_each) {
                      "simplify the meshes, or split the scene");
 }
 
-/// The placed triangles of all instances, still with degenerate and duplicate ones.
+/// The placed triangles of all instances, including degenerate and duplicate ones.
 class Placement {
  public:
   explicit Placement(const SourceAsset& asset) : asset_(asset) {}
@@ -105,7 +105,7 @@ Result<void> Placement::place(const SourceInstance& instance) {
     if (mirrors) std::swap(triangle[1], triangle[2]);
     mesh_.triangles.push_back(triangle);
   }
-  // Only what was touched: a small mesh may come after a large one.
+  // Resets only what was touched: a small mesh may come after a large one.
   for (const Triangle& triangle : source.triangles) {
     for (const std::uint32_t corner : triangle) placed_[corner] = kNone;
   }
@@ -206,7 +206,7 @@ std::uint64_t hashOf(const Vec3& v) {
   return mixed(mixed(xy) + std::bit_cast<std::uint32_t>(v.z));
 }
 
-/// The same for every order of the corners.
+/// The same hash for every order of the corners.
 std::uint64_t hashOf(const Corners& corners) {
   return mixed(hashOf(corners[0]) + hashOf(corners[1]) + hashOf(corners[2]));
 }
@@ -217,10 +217,11 @@ class SeenTriangles {
   explicit SeenTriangles(std::size_t capacity)
       : slots_(std::bit_ceil(2 * capacity)), mask_(slots_.size() - 1) {}
 
-  /// Starts to load what insert() will need. The table is larger than the caches.
+  /// Prefetches what insert() will need: the table is larger than the caches.
   void prefetch(std::uint64_t hash) const { __builtin_prefetch(&slots_[hash & mask_]); }
 
-  /// Whether `corners` (of this hash) are new; then remembers them as triangle `index` of `mesh`.
+  /// Returns whether `corners` (of this hash) are new; if so, remembers them as triangle `index` of
+  /// `mesh`.
   bool insert(const TriangleMesh& mesh, const Corners& corners, std::uint64_t hash,
               std::uint32_t index) {
     const auto tag = static_cast<std::uint32_t>(hash >> 32U);
@@ -239,7 +240,7 @@ class SeenTriangles {
 
  private:
   struct Slot {
-    /// Upper half of the hash: spares most comparisons of corners, which are cache misses.
+    /// Upper half of the hash; avoids most comparisons of corners, which are cache misses.
     std::uint32_t tag = 0;
     std::uint32_t triangle = kNone;
   };
@@ -248,7 +249,7 @@ class SeenTriangles {
   std::size_t mask_;
 };
 
-/// Drops degenerate triangles and all but the first of equal ones, in place.
+/// Drops degenerate triangles, and all but the first of equal ones, in place.
 CleaningCounts dropTriangles(TriangleMesh& mesh) {
   constexpr std::size_t kBlock = 32;
   struct Candidate {

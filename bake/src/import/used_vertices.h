@@ -7,11 +7,11 @@
 
 namespace galactic::bake {
 
-/// Where a vertex that no triangle uses comes to stand.
+/// The new index of a vertex that no triangle uses.
 inline constexpr std::uint32_t kUnused = ~std::uint32_t{0};
 
-/// Where each of `count` vertices comes to stand among those that triangles use: their order stays.
-/// Corners are under `count`.
+/// The new index of each of `count` vertices after unused ones are dropped; the order stays.
+/// Corners must be below `count`.
 [[nodiscard]] inline std::vector<std::uint32_t> placesOfUsed(std::size_t count,
                                                              std::span<const Triangle> triangles) {
   std::vector<std::uint32_t> places(count, kUnused);
@@ -25,7 +25,7 @@ inline constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   return places;
 }
 
-/// Moves the values of used vertices to their places, and drops the others.
+/// Moves the values of used vertices to their new indices and drops the others.
 template <class Value>
 void keepUsed(const std::vector<std::uint32_t>& places, std::vector<Value>& values) {
   std::size_t used = 0;

@@ -89,7 +89,7 @@ Result<void> checkInstance(const SourceAsset& asset, const SourceInstance& insta
   return {};
 }
 
-/// What `scale` may mean, for messages.
+/// The likely values of `scale`, for messages.
 constexpr std::string_view kUnits =
     "0.01 for centimeters, 0.001 for millimeters, 1 if it is right in meters";
 
@@ -130,7 +130,7 @@ void warnAboutSize(SourceAsset& asset, double smallest_size) {
 }
 
 Result<void> checkHeight(const SourceAsset& asset, const std::string& where) {
-  // A room of 2.5 m is 98 inches or 250 cm high, a house of three storeys 10 m.
+  // A room 2.5 m high is 98 inches or 250 cm, and a house of three storeys is 10 m high.
   constexpr double kGreatestHeight = 60;
   const double height = extentsOf(asset)[1];
   if (height <= kGreatestHeight) return {};
@@ -143,7 +143,7 @@ Result<void> checkObjectSize(const SourceAsset& asset, const std::string& where)
   const std::array<double, 3> size = extentsOf(asset);
   const double largest = *std::ranges::max_element(size);
   if (largest <= kLargestObject) return {};
-  // What hands grasp, or a piece of furniture.
+  // Things that hands grasp, and furniture, are at least this large.
   constexpr double kSmallestLikely = 0.05;
   std::string likely;
   for (const double unit : {0.01, 0.001}) {

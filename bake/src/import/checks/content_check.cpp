@@ -43,7 +43,7 @@ Result<Warnings> checkGltf(const std::filesystem::path& path, std::span<const st
   return std::move(required.warnings);
 }
 
-/// A format whose files state how much they hold, and that no reader checks.
+/// A format whose files state how much they hold, which no reader checks.
 struct CountedFormat {
   std::string_view extension;
   Result<void> (*check)(std::string_view file, const std::string& where);
@@ -53,7 +53,7 @@ constexpr std::array kCountedFormats{
     CountedFormat{".ply", checkPlyCounts}, CountedFormat{".obj", checkObj},
     CountedFormat{".stl", checkStl}, CountedFormat{".off", checkOff}};
 
-/// Their readers refuse what is cut off.
+/// The readers of these formats refuse truncated files.
 constexpr std::array<std::string_view, 3> kCheckedByReader{".dae", ".fbx", ".zae"};
 
 }  // namespace

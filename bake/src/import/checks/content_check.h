@@ -11,43 +11,43 @@
 
 namespace galactic::bake {
 
-/// Finds what the mesh readers handle badly, before they see the file: glTF extensions that they
-/// would ignore (kUnsupported), and files that hold less, or more, than they state, of which they
-/// make up the rest (kInvalidInput; glTF, OBJ, PLY, STL, OFF; the readers of COLLADA and FBX see it
-/// themselves). Formats go by the extension of `path`. Returns warnings: of images in formats that
-/// are not read, and of a format of which nobody sees whether a file is whole.
+/// Finds what the mesh readers handle badly, before they see the file. Fails with kUnsupported on
+/// glTF extensions that they would ignore, and with kInvalidInput on files that hold less than they
+/// state, where readers would make up the rest, or more (glTF, OBJ, PLY, STL and OFF; the readers
+/// of COLLADA and FBX notice it themselves). Takes the format from the extension of `path`. Returns
+/// warnings: of images in formats that cannot be read, and of a format for which there is no check
+/// that a file is complete.
 [[nodiscard]] Result<std::vector<std::string>> checkContent(const std::filesystem::path& path);
 
-/// Whether a glTF 2.0 file (.gltf or .glb, `bytes`) holds what it states: the chunks of a GLB its
-/// length, buffers their bytes, buffer views their part of a buffer, accessors their elements, and
-/// triangles three corners each. Buffers in files are looked for beside `path`. Fails with
-/// kInvalidInput; what is no such file passes to the reader.
+/// Checks that a glTF 2.0 file (.gltf or .glb, `bytes`) holds what it states: a GLB its chunks,
+/// buffers their bytes, buffer views their part of a buffer, accessors their elements, and
+/// triangles three corners each. Looks for buffers in files beside `path`. Fails with
+/// kInvalidInput; passes anything that is not such a file, as the reader will refuse it.
 [[nodiscard]] Result<void> checkGltfRanges(const std::filesystem::path& path,
                                            std::span<const std::byte> bytes);
 
-/// Whether a PLY file holds as many elements as its header states. Fails with kInvalidInput on a
-/// header without an end or of more than 10,000 lines, on a file that ends before the last element,
-/// and on one in which another element would fit behind it. What is no PLY passes: the reader says
-/// so. `where` is for messages.
+/// Checks that a PLY file holds as many elements as its header states. Fails with kInvalidInput if
+/// the header has no end or more than 10,000 lines, if the file ends before the last element, or if
+/// another element would fit after it. Passes what is not a PLY, as the reader reports it. `where`
+/// is for messages.
 [[nodiscard]] Result<void> checkPlyCounts(std::string_view file, const std::string& where);
 
-// Whether mesh files are whole, as far as they tell. Each fails with kInvalidInput; what it cannot
-// judge passes to the reader. `where` is for messages.
+// Checks that mesh files are complete, as far as their content shows. Each fails with
+// kInvalidInput, and passes what it cannot judge on to the reader. `where` is for messages.
 
-/// An OBJ does not end inside a statement, its faces use vertices that it has, and it names at most
-/// 1000 material files. A last line without an end is no offence if it can be whole: published
-/// models have such.
+/// Checks that an OBJ does not end inside a statement, that its faces use vertices that exist, and
+/// that it names at most 1000 material files. A last line without a line end passes if it can be
+/// complete: there are published models with one.
 [[nodiscard]] Result<void> checkObj(std::string_view file, const std::string& where);
 
-/// A binary STL has the size of the triangles that it states; in one of text every solid, and every
-/// facet of three vertices, is closed.
+/// Checks that a binary STL is as long as its number of triangles requires; in a text STL, that
+/// every solid is closed, and so is every facet, which has three vertices.
 [[nodiscard]] Result<void> checkStl(std::string_view file, const std::string& where);
 
-/// An OFF file has as many vertices and faces as it states.
+/// Checks that an OFF file has as many vertices and faces as it states.
 [[nodiscard]] Result<void> checkOff(std::string_view file, const std::string& where);
 
-/// What a glTF 2.0 file (JSON or GLB) wants of its reader: what it requires (`extensionsRequired`)
-/// and the mesh reader ignores.
+/// What a glTF 2.0 file (JSON or GLB) requires (`extensionsRequired`) but the mesh reader ignores.
 struct GltfRequirements {
   /// The first extension that changes shapes, such as Draco and meshopt compression.
   std::optional<std::string> unsupported;
@@ -57,7 +57,7 @@ struct GltfRequirements {
   std::vector<std::string> warnings;
 };
 
-/// Nothing also when `file` is no glTF: the reader then says why.
+/// Empty also if `file` is not a glTF: the reader then reports why.
 [[nodiscard]] GltfRequirements gltfRequirements(std::span<const std::byte> file);
 
 }  // namespace galactic::bake

@@ -15,11 +15,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Extensions that a reader may require only to draw surfaces as intended.
+// Extensions that a reader may require only in order to draw surfaces as intended.
 constexpr std::array<std::string_view, 5> kHarmlessPrefixes{
     "KHR_materials_", "KHR_texture_transform", "KHR_lights_", "KHR_xmp", "KHR_animation_"};
 
-/// Extensions that put images of other formats in the place of PNG and JPEG.
+/// An extension for images in a format other than PNG and JPEG.
 struct ImageExtension {
   std::string_view name;
   std::string_view format;
@@ -28,17 +28,17 @@ constexpr std::array kImageExtensions{ImageExtension{"KHR_texture_basisu", "KTX2
                                       ImageExtension{"EXT_texture_webp", "WebP"},
                                       ImageExtension{"MSFT_texture_dds", "DDS"}};
 
-/// Readers, and what writes JSON, go down into what is nested by calling themselves. No tool writes
-/// a glTF file with a hundred levels.
+/// Readers, and writers of JSON, descend into nested values by recursion. No tool writes a glTF
+/// file with even a hundred levels.
 constexpr std::size_t kDeepest = 1000;
 
-/// What readableGltf undoes, so that every reader takes it rightly.
+/// Readers are fine with this one, because readableGltf undoes it.
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 
-/// Readers that do not know it draw less, and not only otherwise.
+/// A reader that ignores this one draws too few objects, and not just different ones.
 constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
 
-/// Null of any other extension.
+/// The image extension of this name; null for any other extension.
 const ImageExtension* imageExtension(std::string_view name) {
   const auto* image = std::ranges::find(kImageExtensions, name, &ImageExtension::name);
   return image == kImageExtensions.end() ? nullptr : image;
@@ -50,8 +50,8 @@ bool isHarmless(std::string_view extension) {
                      [&](std::string_view prefix) { return extension.starts_with(prefix); });
 }
 
-/// Streams through the JSON and keeps nothing but what matters; a document tree of a file with
-/// embedded buffers would take several times its size.
+/// Streams through the JSON and keeps only what matters; a document tree of a file with embedded
+/// buffers would take several times the file's size.
 class RequiredExtensions final : public Json::json_sax_t {
  public:
   bool null() override { return true; }
@@ -104,7 +104,7 @@ class RequiredExtensions final : public Json::json_sax_t {
   [[nodiscard]] GltfRequirements take() { return std::move(found_); }
 
  private:
-  /// Members of a texture, and of its extensions.
+  /// The relevant members of a texture and its extensions.
   struct Texture {
     bool has_source = false;
     bool in_extensions = false;
@@ -132,7 +132,8 @@ class RequiredExtensions final : public Json::json_sax_t {
       if (const ImageExtension* image = imageExtension(name)) texture_.other = image;
     }
   }
-  /// Once for each kind: images that are required to be read, or that a texture has no other for.
+  /// Warns, once for each extension, of images that the file requires, or that a texture has no
+  /// alternative to.
   void tellOf(const ImageExtension& image) {
     if (!told_.insert(image.name).second) return;
     found_.warnings.push_back(
@@ -140,7 +141,7 @@ class RequiredExtensions final : public Json::json_sax_t {
                     "export them as PNG or JPEG",
                     image.format, image.name));
   }
-  /// Weights of a mesh are applied; those of a node would give the mesh another shape there.
+  /// Weights of a mesh are applied; those of a node would give the mesh another shape at that node.
   bool weight(bool counts) {
     if (!counts || !in_weights_ || depth_ != kNodeDepth + 1) return true;
     in_weights_ = false;
@@ -151,7 +152,7 @@ class RequiredExtensions final : public Json::json_sax_t {
     return true;
   }
 
-  /// Inside the document, a list (of nodes, of textures), and one of it.
+  /// Depth inside an element of a list (of nodes or of textures) of the document.
   static constexpr std::size_t kNodeDepth = 3;
 
   std::size_t depth_ = 0;

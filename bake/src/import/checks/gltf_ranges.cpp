@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 constexpr std::int64_t kTriangles = 4;
 constexpr std::string_view kNoOffset = "a byteOffset that is no whole number from 0 on";
 
-/// Components of one element of an accessor; 0 of an unknown type.
+/// Number of components of one element of an accessor; 0 for an unknown type.
 std::uint64_t componentsOf(std::string_view type) {
   constexpr std::array<std::pair<std::string_view, std::uint64_t>, 7> kTypes{{{"SCALAR", 1},
                                                                               {"VEC2", 2},
@@ -39,7 +39,7 @@ std::uint64_t componentsOf(std::string_view type) {
   return found == kTypes.end() ? 0 : found->second;
 }
 
-/// Bytes that the data URI holds: three of four characters.
+/// Number of bytes that the data URI holds: four characters of base64 encode three.
 std::uint64_t decodedBytes(std::string_view uri) {
   const std::size_t comma = uri.find(',');
   if (comma == uri.npos) return 0;
@@ -102,10 +102,10 @@ class GltfRanges {
     } else if (!uri.empty()) {
       found = bytesOfFile(uri);
     } else if (n > 0) {
-      // Only the first one is the GLB's own; others without a URI belong to extensions.
+      // Only the first buffer is the GLB's own; others without a URI belong to extensions.
       return {};
     }
-    // The reader says that there is no such file.
+    // If the file does not exist, the reader reports it.
     if (!found || *found >= *stated) return {};
     if (!uri.empty() && isLfsPointer(path_.parent_path() / withoutUriEscapes(uri))) {
       return fail(ErrorCode::kInvalidInput, path_.string(),
@@ -138,7 +138,8 @@ class GltfRanges {
                               *length, *begin, all));
   }
 
-  /// Whether `count` elements of `bytes` each fit into the view that `owner` names.
+  /// Checks that `count` elements of `bytes` bytes each fit into the buffer view that `owner`
+  /// names.
   [[nodiscard]] Result<void> checkFits(const Json& owner, std::uint64_t count, std::uint64_t bytes,
                                        const std::string& what) const {
     const Json& views = listOf("bufferViews");
@@ -205,7 +206,7 @@ class GltfRanges {
     return {};
   }
 
-  /// The count of an accessor; none where there is no such.
+  /// The count of an accessor; none if there is no such accessor.
   [[nodiscard]] std::optional<std::uint64_t> countOf(const Json& index) const {
     const Json& accessors = listOf("accessors");
     if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) {
@@ -215,7 +216,7 @@ class GltfRanges {
     return accessor.is_object() ? gltfWhole(accessor, "count") : std::nullopt;
   }
 
-  /// Those of a primitive, or of a morph target.
+  /// Checks the attributes of a primitive, or of a morph target.
   [[nodiscard]] Result<void> checkAttributes(const Json& attributes, std::uint64_t vertices,
                                              const std::string& what) const {
     if (!attributes.is_object()) return {};
@@ -271,12 +272,12 @@ class GltfRanges {
   const fs::path& path_;
   const Json& document_;
   std::uint64_t binary_bytes_;
-  /// Of an accessor with a buffer view, so that there are bytes of them. One without is all zeros
-  /// and has as many as another of its mesh.
+  /// The most elements of any accessor that has a buffer view, and thus bytes. An accessor without
+  /// one is all zeros and has as many elements as another of its mesh.
   std::uint64_t most_elements_ = 0;
 };
 
-/// Length of the GLB's own buffer, which is the chunk behind the JSON; 0 of other files.
+/// Length of the GLB's own buffer, which is the chunk after the JSON; 0 for other files.
 Result<std::uint64_t> binaryBytes(const fs::path& path, std::span<const std::byte> file) {
   if (!isGlb(file)) return 0;
   const auto cut_off = [&](std::uint64_t stated, const char* what) {

@@ -15,12 +15,14 @@
 namespace galactic::bake {
 namespace {
 
-/// Area by height: floors are wide levels, of a wall that is taken for one only so much faces up.
+/// Area by height. Floors are wide levels; if a wall is mistaken for a floor, only some of it faces
+/// up at any one level.
 class Levels {
  public:
   void add(double height, double area) { areas_[std::floor(height / kBin)] += area; }
 
-  /// The area of the widest level, square meters: of two bins, as floors may lie between them.
+  /// The area of the widest level in square meters. Sums two adjacent bins, as a floor may lie
+  /// across their boundary.
   [[nodiscard]] double widest() const {
     double most = 0;
     for (auto at = areas_.begin(); at != areas_.end(); ++at) {
@@ -32,7 +34,7 @@ class Levels {
   }
 
  private:
-  /// Meters. Floors of scans are not flat, and rugs and thresholds are no levels of their own.
+  /// Meters. Floors of scans are not flat, and rugs and thresholds are not levels of their own.
   static constexpr double kBin = 0.1;
 
   std::map<double, double> areas_;
@@ -50,7 +52,7 @@ struct AxisLevels {
 };
 
 AxisLevels levelsOf(const SourceAsset& asset) {
-  // Cosine of the angle by which a floor may lean: 18 degrees, as scans are bumpy.
+  // Cosine of the largest tilt of a floor: 18 degrees, because scans are bumpy.
   constexpr double kLevel = 0.95;
   AxisLevels levels;
   for (const SourceInstance& instance : asset.instances) {
@@ -72,10 +74,10 @@ AxisLevels levelsOf(const SourceAsset& asset) {
 }  // namespace
 
 void warnAboutUp(SourceAsset& asset) {
-  // Square meters: less is no room but a door.
+  // Square meters: anything smaller is a door, not a room.
   constexpr double kLeastFloor = 3;
-  // In what stands upright a wall may well be wider than the floor, but seldom by half of it and
-  // in a room that would be lower.
+  // In an upright scene a wall may well be wider than the floor, but it is seldom wider by half,
+  // and seldom in a room that would be lower on its side.
   constexpr double kClearlyMore = 1.5;
   if (!std::string_view(asset.format).starts_with("glTF")) return;
   const std::array<double, 3> size = extentsOf(asset);

@@ -38,7 +38,7 @@ const ScalarType* scalarType(std::string_view name) {
 
 struct Property {
   const ScalarType* type = nullptr;
-  /// Of a list: the type of its length.
+  /// Type of the length, if the property is a list.
   const ScalarType* length = nullptr;
 };
 
@@ -53,11 +53,11 @@ enum class Encoding { kAscii, kLittleEndian, kBigEndian };
 struct Header {
   Encoding encoding = Encoding::kAscii;
   std::vector<Element> elements;
-  /// Where the elements begin.
+  /// Offset of the first element.
   std::size_t size = 0;
 };
 
-/// Nothing where the header is one that only the reader can judge.
+/// None for a header that only the reader can judge.
 using FoundHeader = std::optional<Header>;
 
 bool isPly(std::string_view file) {
@@ -119,7 +119,7 @@ class PlyCounter {
     Header header;
     bool is_known = false;
     for (Lines lines(file_); lines.next();) {
-      // The reader's time grows with the square of their number.
+      // The reader's time grows with the square of the number of lines.
       if (lines.number() > kMostHeaderLines) {
         return fail(ErrorCode::kInvalidInput, where_,
                     fmt::format("its PLY header has more than {} lines, at most so many are read; "
@@ -156,7 +156,7 @@ class PlyCounter {
                 "again");
   }
 
-  /// Each element is a line.
+  /// In a text file each element is a line.
   [[nodiscard]] Result<void> checkText(const Header& header) const {
     Lines lines(file_.substr(header.size));
     for (const Element& element : header.elements) {
@@ -171,7 +171,7 @@ class PlyCounter {
     return lines.nextFilled() ? Result<void>(tooMany(header)) : Result<void>{};
   }
 
-  /// Whether a line has all words of an element.
+  /// Whether a line has all the words of an element.
   [[nodiscard]] static bool holds(std::string_view line, const Element& element) {
     Words words(line);
     for (const Property& property : element.properties) {
@@ -203,12 +203,12 @@ class PlyCounter {
         if (!skip(element, header.encoding, rest)) return tooFew(element, n);
       }
     }
-    // A few bytes behind the last element are padding, or a line's end.
+    // A few bytes after the last element are padding, or a line end.
     const bool another_fits = rest.size() >= leastBytes(header.elements.back());
     return another_fits ? Result<void>(tooMany(header)) : Result<void>{};
   }
 
-  /// 0 of an element with lists.
+  /// Size in bytes of an element; 0 if it has lists.
   [[nodiscard]] static std::size_t fixedBytes(const Element& element) {
     std::size_t bytes = 0;
     for (const Property& property : element.properties) {
@@ -218,7 +218,7 @@ class PlyCounter {
     return bytes;
   }
 
-  /// Of an element whose lists are triangles.
+  /// Least size in bytes of an element, whose lists are triangles.
   [[nodiscard]] static std::size_t leastBytes(const Element& element) {
     std::size_t bytes = 0;
     for (const Property& property : element.properties) {

@@ -17,8 +17,9 @@ tl::unexpected<Error> cutOff(const std::string& where, const std::string& messag
               message + "; the file is cut off or damaged: export or download it again");
 }
 
-/// How a corner of an OBJ's face is written: v, v/t, v//n or v/t/n, as a number of slashes and
-/// whether something stands between and behind them.
+/// A number for the form of a corner of an OBJ's face (v, v/t, v//n or v/t/n): it encodes the
+/// number of slashes, whether there is something between them, and whether there is something after
+/// the last.
 unsigned cornerForm(std::string_view corner) {
   const auto slashes = static_cast<unsigned>(std::count(corner.begin(), corner.end(), '/'));
   const bool is_whole = !corner.empty() && corner.back() != '/';
@@ -35,7 +36,7 @@ bool areAlike(Words corners) {
   return count >= 3 && form % 2 == 1;
 }
 
-/// Whether a line on which an OBJ ends can be a whole statement.
+/// Whether the last line of an OBJ can be a complete statement.
 bool canEndObj(std::string_view line) {
   Words words(line);
   const std::string_view keyword = words.next();
@@ -48,7 +49,7 @@ bool canEndObj(std::string_view line) {
          (keyword == "s" && count == 1);
 }
 
-/// The largest vertex that the face uses; 0 of one that counts backwards.
+/// The largest vertex that the face uses; relative (negative) indices count as 0.
 std::uint64_t largestVertex(Words corners) {
   std::uint64_t largest = 0;
   for (std::string_view corner = corners.next(); !corner.empty(); corner = corners.next()) {
@@ -58,8 +59,8 @@ std::uint64_t largestVertex(Words corners) {
   return largest;
 }
 
-/// A number like .5 among `numbers`; empty where there is none. The reader ends a line there, and
-/// a vertex that it drops moves all later ones.
+/// The first of `numbers` that is like .5; empty if there is none. The reader ends the line there,
+/// and drops the vertex, which shifts all later ones.
 std::string_view numberWithoutDigit(Words numbers) {
   for (std::string_view n = numbers.next(); !n.empty(); n = numbers.next()) {
     if (n.front() == '#') break;
@@ -86,7 +87,7 @@ Result<void> checkStlText(std::string_view file, const std::string& where) {
   for (Lines lines(file); lines.next();) {
     Words words(lines.line());
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-      // Names may be anything.
+      // What follows is a name, which may be anything.
       if (word == "solid") {
         ++open_solids;
         break;
@@ -122,10 +123,10 @@ Result<void> checkStlBinary(std::string_view file, const std::string& where) {
                                    file.size(), (file.size() - kHead) / kTriangle));
 }
 
-/// Each is looked for, read and told of; real files name one.
+/// Each of these files is looked for, read and reported; real files name one.
 constexpr std::size_t kMostLibraries = 1000;
 
-/// Whether the lines of an OFF file hold what they should.
+/// Checks that an OFF file has as many vertices and faces as it states.
 class OffCounter {
  public:
   OffCounter(std::string_view file, const std::string& where) : lines_(file), where_(where) {}
@@ -151,7 +152,7 @@ class OffCounter {
  private:
   using Counts = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
-  /// They stand behind the word OFF or on a line of their own; that word may be left out.
+  /// The numbers follow the word OFF, or are on a line of their own; the word may be absent.
   Counts readCounts() {
     while (lines_.nextFilled('#')) {
       Words words(lines_.line());

@@ -7,12 +7,12 @@
 
 namespace galactic::bake {
 
-/// The words of a line: what stands between blanks.
+/// The words of a line, which are separated by blanks.
 class Words {
  public:
   explicit Words(std::string_view line) : rest_(line) {}
 
-  /// Empty at the end.
+  /// The next word; empty at the end.
   std::string_view next() {
     constexpr std::string_view kBlanks = " \t\r\v\f";
     const std::size_t begin = rest_.find_first_not_of(kBlanks);
@@ -26,7 +26,7 @@ class Words {
     return word;
   }
 
-  /// The next word as a whole number; none where there is no such word.
+  /// The next word as a whole number; none if the word is missing or not a number.
   template <class Number>
   std::optional<Number> nextNumber() {
     const std::string_view word = next();
@@ -38,7 +38,7 @@ class Words {
     return number;
   }
 
-  /// How many words are left.
+  /// Number of words that are left.
   std::size_t count() {
     std::size_t words = 0;
     while (!next().empty()) ++words;
@@ -49,12 +49,12 @@ class Words {
   std::string_view rest_;
 };
 
-/// The lines of a text one after the other, whatever ends them: \n, \r\n or \r.
+/// The lines of a text one after the other, with any line end: \n, \r\n or \r.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {}
 
-  /// Moves on to the next line; false at the end.
+  /// Moves to the next line; false at the end.
   bool next() {
     if (at_ >= text_.size()) return false;
     const std::size_t end = text_.find_first_of("\r\n", at_);
@@ -66,7 +66,7 @@ class Lines {
     return true;
   }
 
-  /// Moves on to the next line that has a word, which does not begin with `comment`.
+  /// Moves to the next line that has a word and does not begin with `comment`.
   bool nextFilled(char comment = '\0') {
     while (next()) {
       const std::string_view word = Words(line_).next();
@@ -75,13 +75,13 @@ class Lines {
     return false;
   }
 
-  /// Without its end.
+  /// The line without its end.
   [[nodiscard]] std::string_view line() const { return line_; }
-  /// From 1 on.
+  /// Number of the line, counted from 1.
   [[nodiscard]] std::size_t number() const { return number_; }
-  /// Whether the line ends, other than with the text.
+  /// Whether the line has a line end, rather than ending with the text.
   [[nodiscard]] bool hasEnd() const { return has_end_; }
-  /// What follows the line.
+  /// Offset of the text after the line.
   [[nodiscard]] std::size_t offset() const { return at_; }
 
  private:
