@@ -15,7 +15,7 @@ tl::unexpected<Error> invalid(const std::string& where, std::string message) {
   return fail(ErrorCode::kInvalidInput, where, std::move(message));
 }
 
-/// A recipe beside the robot that it is for.
+/// Checks a recipe against the robot that it is for.
 class RecipeCheck {
  public:
   RecipeCheck(const RobotRecipe& recipe, const SourceRobot& robot)
@@ -28,14 +28,14 @@ class RecipeCheck {
     }
   }
 
-  /// Links exist, and fit what is said of them.
+  /// Checks that the links exist and that the recipe's statements about them make sense.
   [[nodiscard]] Result<void> checkLinks() const;
-  /// Of a robot whose joints are coupled.
+  /// Checks the joints. `robot` must have its joints coupled.
   [[nodiscard]] Result<void> checkJoints() const;
 
  private:
   [[nodiscard]] Result<void> checkLink(const RecipeName& name) const;
-  /// The link below a joint that can be set.
+  /// The link below a joint whose position can be set.
   [[nodiscard]] Result<const SourceLink*> findJoint(const RecipeName& name) const;
   [[nodiscard]] Result<void> checkJoint(const RecipeJoint& joint) const;
   [[nodiscard]] Result<void> checkLimits(const RecipeLimits& given) const;
@@ -46,7 +46,7 @@ class RecipeCheck {
   const RobotRecipe& recipe_;
   const SourceRobot& robot_;
   std::vector<std::string> links_;
-  /// Those that can be set.
+  /// Joints whose position can be set.
   std::vector<std::string> joints_;
 };
 
@@ -176,7 +176,7 @@ Result<void> checkRecipe(const RobotRecipe& recipe, const SourceRobot& robot) {
     return invalid(recipe.source, fmt::format("the robot '{}' has no links", robot.name));
   }
   RETURN_IF_ERROR(RecipeCheck(recipe, robot).checkLinks());
-  // Its tree alone.
+  // Copies only the tree.
   SourceRobot coupled;
   coupled.name = robot.name;
   coupled.links = robot.links;

@@ -23,7 +23,7 @@ constexpr double kLargestStep = 3.2;
 constexpr double kLargestPosition = 1e6;
 constexpr std::uint32_t kMostDofs = 10'000;
 
-/// What is read of a collection, and the first error.
+/// What has been read of a collection so far, and the first error.
 class CollectionReader {
  public:
   explicit CollectionReader(const fs::path& path) : json_(path.string()) {}
@@ -36,7 +36,7 @@ class CollectionReader {
   std::vector<HandSphere> readSpheres(const JsonNode& list);
   void readRobot(const JsonNode& node);
   void readActions(const JsonNode& actions, CollectionRobot& robot);
-  /// The farthest move of an action, which is the same both ways.
+  /// The farthest move of an action, which must be the same in both directions.
   double readStep(const JsonNode& action);
 
   JsonReader json_;
@@ -159,7 +159,7 @@ Result<Collection> CollectionReader::read(const Json& root) {
   return std::move(collection_);
 }
 
-/// The links below the joints that have a position, in the order in which the published simulator
+/// The links below joints that have a position, in the order in which the published simulator
 /// numbers them.
 std::vector<std::size_t> dofOrder(const SourceRobot& robot) {
   std::vector<std::vector<std::size_t>> children(robot.links.size());
@@ -167,7 +167,7 @@ std::vector<std::size_t> dofOrder(const SourceRobot& robot) {
     children[static_cast<std::size_t>(robot.links[i].parent)].push_back(i);
   }
   for (auto& list : children) {
-    // Descending, because the stack below turns the order round. Joint names differ.
+    // Descending, because the stack below reverses the order. No two joints have the same name.
     std::sort(list.begin(), list.end(), [&](std::size_t a, std::size_t b) {
       return robot.links[a].joint_name > robot.links[b].joint_name;
     });
@@ -183,7 +183,8 @@ std::vector<std::size_t> dofOrder(const SourceRobot& robot) {
   return order;
 }
 
-/// The camera with which the published policies were trained; their file does not name it.
+/// The camera with which the published policies were trained; the collection file does not contain
+/// it.
 constexpr const char* kCameraLink = "head_pan_link";
 constexpr std::array<double, 3> kCameraPosition{0.2, 0.2, 0};
 constexpr double kCameraDownPitch = 0.3490658503988659;    // 20 degrees
@@ -198,7 +199,7 @@ RecipeCamera publishedCamera(const std::string& where) {
           .vertical_fov = kCameraFieldOfView};
 }
 
-/// The circle around the spheres of the root link; those of other links may be anywhere.
+/// Radius of the circle around the spheres of the root link; other links may move away from it.
 double footprintRadius(const CollectionRobot& robot, const std::string& root) {
   double radius = 0;
   for (const LinkSpheres& link : robot.links) {

@@ -22,18 +22,19 @@ struct CollectionObject {
   std::array<double, 3> box_min{};
   std::array<double, 3> box_max{};
   SphereTechnique technique = SphereTechnique::kListed;
-  /// With kListed.
+  /// Only for kListed.
   std::vector<HandSphere> spheres;
 };
 
-/// A joint that an action moves; `dof` counts the joints that move, see recipeFromCollection.
+/// A joint that an action moves; `dof` is its number among the movable joints, see
+/// recipeFromCollection.
 struct CollectionJoint {
   std::uint32_t dof = 0;
   double step = 0;
 };
 
 struct CollectionRobot {
-  /// As the file states it.
+  /// The path as the file states it.
   std::string urdf;
   std::vector<double> start_positions;
   std::string gripper_link;
@@ -42,7 +43,7 @@ struct CollectionRobot {
   std::optional<double> forward_step;
   std::optional<double> turn_step;
   std::vector<CollectionJoint> joints;
-  /// Y up and X forward, as the file has them.
+  /// Y up and X forward, as in the file.
   std::vector<LinkSpheres> links;
 };
 
@@ -52,12 +53,12 @@ struct Collection {
   std::vector<double> radii;
   std::vector<CollectionObject> objects;
   std::optional<CollectionRobot> robot;
-  /// One sentence each: keys that are not used.
+  /// One sentence for each key that is not used.
   std::vector<std::string> warnings;
 };
 
 /// Reads a collection file. Fails with kIo or kInvalidInput, naming the file and the element, on
-/// broken JSON, missing keys, wrong types, numbers out of range, more than one robot.
+/// broken JSON, missing keys, wrong types, numbers out of range, or more than one robot.
 [[nodiscard]] Result<Collection> readCollection(const std::filesystem::path& path);
 
 struct CollectionRecipe {
@@ -65,12 +66,12 @@ struct CollectionRecipe {
   std::vector<std::string> warnings;
 };
 
-/// The recipe that says the same as the collection's robot. The published simulator counts the
-/// movable joints depth first, children sorted by joint name; that order gives the numbers their
-/// names. The file has no camera: the published training camera is set where the robot has its
-/// link (head_pan_link). The footprint is the circle around the root's spheres. Links without
-/// spheres in the file are skipped. Fails with kInvalidInput when the collection has no robot, or
-/// one that does not fit `robot`.
+/// The recipe equivalent to the collection's robot. The collection identifies joints by number: the
+/// published simulator counts the movable joints depth first, with children sorted by joint name.
+/// The file has no camera: if the robot has the link of the published training camera
+/// (head_pan_link), the recipe gets that camera. The footprint is the circle around the root's
+/// spheres. Links without spheres in the file are skipped. Fails with kInvalidInput if the
+/// collection has no robot, or one that does not fit `robot`.
 [[nodiscard]] Result<CollectionRecipe> recipeFromCollection(const Collection& collection,
                                                             const SourceRobot& robot);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-/// A turn of the axes only: no number is rounded.
+/// Exact, because the turn only permutes axes and changes signs.
 Point turned(const Affine& turn, const Point& point) {
   Point result{};
   for (std::size_t row = 0; row < 3; ++row) {

@@ -24,7 +24,7 @@ Result<std::size_t> linkBelow(const RecipeName& joint, const SourceRobot& robot)
                           joint.name, suggestNames(joint.name, names)));
 }
 
-/// What the joints of a robot follow, in the order of their links.
+/// The joints that follow others, in the order of their links.
 std::vector<JointMimic> mimicsOf(const SourceRobot& robot) {
   std::vector<JointMimic> mimics;
   for (const SourceLink& link : robot.links) {

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 bool isPattern(std::string_view part) { return part.find_first_of("*?") != std::string_view::npos; }
 
-/// What fits one part of a path, in each of `folders`.
+/// The paths in any of `folders` that match one part of a pattern.
 std::vector<fs::path> step(const std::vector<fs::path>& folders, const fs::path& part) {
   std::vector<fs::path> found;
   const std::string name = part.string();
@@ -27,7 +27,7 @@ std::vector<fs::path> step(const std::vector<fs::path>& folders, const fs::path&
     for (fs::directory_iterator at(folder, problem), end; !problem && at != end;
          at.increment(problem)) {
       const std::string candidate = at->path().filename().string();
-      // As in a shell, a leading dot has to be written.
+      // As in a shell, the pattern must spell a leading dot.
       if (candidate.front() == '.' && name.front() != '.') continue;
       if (fitsPattern(candidate, name)) found.push_back(at->path());
     }
@@ -44,7 +44,7 @@ std::vector<fs::path> matches(const fs::path& root, const fs::path& pattern) {
   const fs::path start = pattern.is_absolute() ? pattern.root_path() : root;
   std::vector<fs::path> found{start};
   for (const fs::path& part : pattern.relative_path()) {
-    // A slash at the end.
+    // The last part is empty after a trailing slash.
     if (!part.empty()) found = step(found, part);
   }
   return found;
@@ -53,7 +53,7 @@ std::vector<fs::path> matches(const fs::path& root, const fs::path& pattern) {
 }  // namespace
 
 bool fitsPattern(std::string_view text, std::string_view pattern) {
-  // The usual walk: after a mismatch, the last star takes one character more.
+  // The usual algorithm: after a mismatch, the last star takes one character more.
   std::size_t at = 0;
   std::size_t in_pattern = 0;
   std::size_t star = std::string_view::npos;
@@ -84,7 +84,7 @@ Result<std::vector<fs::path>> findInputs(const std::vector<std::string>& pattern
     for (const fs::path& root : roots) {
       std::vector<fs::path> here = matches(root, pattern);
       if (here.empty()) continue;
-      // What is found first counts, but for empty folders: they hide nothing that is elsewhere.
+      // The first root with a match wins, but an empty folder does not hide what other roots have.
       const bool is_empty = std::ranges::all_of(here, isEmptyFolder);
       if (matched.empty() || !is_empty) matched = std::move(here);
       if (!is_empty) break;

@@ -9,12 +9,13 @@
 namespace galactic::bake {
 namespace {
 
-/// Above this radius spheres stand side by side, below it they leave gaps of a radius.
+/// Above this radius spheres stand side by side; below it there are gaps of one radius between
+/// them.
 constexpr double kLargeRadius = 0.1;
 /// The published simulator computes in floats and compares fuzzily.
 constexpr double kSameCenter = 1e-7;
 
-/// The rule for one box; x across, y deep, z up.
+/// The rule for one box, with x across, y deep and z up.
 class PublishedRule {
  public:
   PublishedRule(const CollectionObject& object, const std::vector<float>& radii)
@@ -45,7 +46,7 @@ class PublishedRule {
   using Triple = std::array<double, 3>;
 
   [[nodiscard]] int countAlong(std::size_t axis, double spacing) const {
-    // Bounded: a box of the largest extent in the smallest spheres has a few thousand.
+    // Bounded, because the smallest spheres along the largest extent would be a few thousand.
     const double count = (hi_[axis] - lo_[axis]) / spacing;
     return std::max(static_cast<int>(std::min(count, kMostAlong)) + 1, 2);
   }

@@ -11,10 +11,10 @@
 namespace galactic::bake {
 namespace {
 
-/// Farthest moves of one action: the angle is the Galactic paper's.
+/// Farthest moves of one action; the angle is that of the Galactic paper.
 constexpr double kRevoluteStep = 0.196;
 constexpr double kPrismaticStep = 0.05;
-/// What the draft shows where a joint's limits let it move nowhere: a hand that opens.
+/// Example values for joints whose limits allow no movement, such as those of a hand that opens.
 constexpr double kExampleTurn = 0.5;
 constexpr double kExampleSlide = 0.05;
 
@@ -40,7 +40,7 @@ std::string tomlText(std::string_view name) {
   return text + '"';
 }
 
-/// Writes down what is guessed of a robot as its recipe.
+/// Writes the guesses about a robot as its recipe.
 class RecipeDraft {
  public:
   explicit RecipeDraft(const SourceRobot& robot) : robot_(robot), guess_(guessRobot(robot)) {}
@@ -58,7 +58,7 @@ class RecipeDraft {
   }
 
  private:
-  /// How many joints that lead to the hand one action on a joint moves.
+  /// Number of joints leading to the hand that one action on the joint above `leader` moves.
   [[nodiscard]] std::size_t movedBy(std::size_t leader) const {
     auto moved = 1 + static_cast<std::size_t>(std::ranges::count(guess_.followers, leader,
                                                                  &RobotGuess::Follower::leader));
@@ -175,7 +175,7 @@ class RecipeDraft {
     }
   }
 
-  /// A joint that actions move; each of its lines begins with `margin`.
+  /// The entry of a joint that actions move; each of its lines begins with `margin`.
   [[nodiscard]] std::string jointEntry(std::size_t n, std::string_view margin) const {
     const SourceLink& link = robot_.links[n];
     const bool slides = link.joint_type == JointType::kPrismatic;

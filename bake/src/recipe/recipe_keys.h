@@ -7,26 +7,27 @@
 
 namespace galactic::bake {
 
-// Each key of a robot recipe is described once, here. What reads recipes and what explains them
-// (--print-recipe) are visitors of these functions, so that neither knows a key of its own.
+// These functions are the only description of the keys of a robot recipe. The code that reads
+// recipes and the code that explains them (--print-recipe) are visitors of these functions, so that
+// neither has keys of its own.
 
-/// A key of a table: what it is called, what it says and, in the recipe that explains every key, an
-/// example. Without an example the default is shown, which is what the field holds.
+/// A key of a table: its name, its meaning and, for the recipe that explains every key, an example.
+/// Without an example that recipe shows the default, which is the value of the field.
 struct RecipeKey {
   std::string_view name;
   std::string_view help{};
-  /// As TOML.
+  /// In TOML.
   std::string_view example{};
   bool is_required = false;
-  /// Excluded by a key before it, so that the explained recipe shows it as a comment.
+  /// Another key before it excludes this one, so that the explained recipe shows it as a comment.
   bool is_alternative = false;
 };
 
-/// A table, or a list of tables: its key and what it is for.
+/// A table, or a list of tables: its key and its purpose.
 struct RecipeSection {
   std::string_view name;
   std::string_view help;
-  /// Of tables whose keys are names of links and joints: an entry, or the name of one.
+  /// For tables whose keys are names of links or joints: an example of an entry, or of a name.
   std::string_view example{};
   bool is_required = false;
 };
@@ -37,7 +38,7 @@ inline constexpr NumberRange kTolerance{0.001, 1, "m"};
 inline constexpr NumberRange kHeight{0, 10, "m"};
 inline constexpr NumberRange kSphereCount{1, 10'000, ""};
 inline constexpr NumberRange kJointPosition{-1e6, 1e6, ""};
-/// Packs hold no larger ones.
+/// The largest numbers that packs can hold.
 inline constexpr NumberRange kMimicNumber{-1000, 1000, ""};
 
 template <class V>

@@ -16,7 +16,7 @@
 namespace galactic::bake {
 namespace {
 
-/// A value, for a message that refuses it.
+/// The text of a value, for messages that refuse it.
 struct ValueName {
   std::string operator()(bool truth) const { return truth ? "true" : "false"; }
   std::string operator()(std::int64_t whole) const { return fmt::format("{}", whole); }
@@ -26,7 +26,7 @@ struct ValueName {
   std::string operator()(const TomlTable&) const { return "a table"; }
 };
 
-/// Gives the options of the table of options the values of a table of TOML.
+/// Sets the options of the option table to the values of a TOML table.
 class TaskReader {
  public:
   TaskReader(const TomlTable& table, std::uint32_t line, FirstError& errors)
@@ -48,7 +48,7 @@ class TaskReader {
     const TomlValue* value = take(name);
     if (value == nullptr) return;
     const std::optional<double> number = numberOf(*value);
-    // False for NaN.
+    // This comparison is false for NaN.
     if (number && *number >= static_cast<double>(within.least) &&
         *number <= static_cast<double>(within.most)) {
       field = static_cast<float>(*number);
@@ -56,7 +56,7 @@ class TaskReader {
       refuse(name, *value, fmt::format("a number from {} to {}", within.least, within.most));
     }
   }
-  /// A number, or a range in quotes.
+  /// Reads a number, or a range in quotes.
   void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view) {
     const TomlValue* value = take(name);
     if (value == nullptr) return;
@@ -71,7 +71,7 @@ class TaskReader {
       refuse(name, *value, wantedDrawn(within));
     }
   }
-  /// A whole number, or a range in quotes.
+  /// Reads a whole number, or a range in quotes.
   void drawn(std::string_view name, DrawnCount& field, std::uint32_t most, std::string_view) {
     const TomlValue* value = take(name);
     if (value == nullptr) return;
@@ -123,7 +123,7 @@ class TaskReader {
     given_.insert(preset.parts.begin(), preset.parts.end());
   }
 
-  /// Names that the table of options does not have are errors.
+  /// Reports names that the option table does not have.
   void finish() { table_.finish(); }
   [[nodiscard]] bool isGiven(std::string_view name) const { return given_.contains(name); }
 
@@ -142,7 +142,8 @@ class TaskReader {
     return std::nullopt;
   }
 
-  /// The value that the table names; null where it names none.
+  /// The value whose name the table gives; null, and an error if the table gives another name,
+  /// otherwise.
   template <class T>
   const T* choose(std::string_view name, std::span<const Named<T>> names) {
     const TomlValue* value = take(name);
@@ -163,11 +164,11 @@ class TaskReader {
 
   RecipeTable table_;
   FirstError& errors_;
-  /// Names in the table of options, which outlive it.
+  /// Names of the options that were given; the strings of the option table outlive this.
   std::set<std::string_view> given_;
 };
 
-/// What says how a batch runs, not what its task is.
+/// Refuses options that say how a batch runs rather than what its task is.
 void refuseBatchOptions(const TomlTable& table, FirstError& errors) {
   const std::vector<OptionText> all = listOptions({});
   const std::vector<OptionText> of_task = listOptions({}, OptionScope::kTask);

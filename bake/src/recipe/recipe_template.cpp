@@ -20,7 +20,7 @@ constexpr std::string_view kPreamble =
     "out. Positions and rotations are in frames of that file (X forward, Y left, Z up); meters, "
     "radians unless a key says degrees.";
 
-/// Writes a recipe with every key explained: an example or the default of each, and what it means.
+/// Writes a recipe that explains every key: an example or the default, and its meaning.
 class RecipeExplainer {
  public:
   RecipeExplainer() { addComment(kPreamble); }
@@ -101,7 +101,7 @@ class RecipeExplainer {
 
   static std::string quoted(std::string_view name) { return fmt::format("\"{}\"", name); }
 
-  /// A comment in lines of kWidth, broken between words.
+  /// Adds a comment in lines of at most kWidth, broken between words.
   void addComment(std::string_view help) {
     std::string line = "#";
     while (!help.empty()) {
@@ -116,8 +116,8 @@ class RecipeExplainer {
     text_ += line + '\n';
   }
 
-  /// `normal` is the default; none where the key has to be given, or the help says what happens
-  /// without it.
+  /// `normal` is the default; none if the key is required, or if the help says what happens without
+  /// it.
   void add(const RecipeKey& key, std::string value, const std::optional<std::string>& normal) {
     const bool shows_default = normal && !key.is_required;
     if (value.empty()) value = normal.value_or("");
@@ -135,7 +135,7 @@ class RecipeExplainer {
     text_ += fmt::format("[{}]\n{}\n", section.name, entry);
   }
 
-  /// A table with the keys of a T; `form` holds its name.
+  /// Adds a table with the keys of a T; `form` is the format of its heading.
   template <class T>
   void explain(const RecipeSection& section, std::string_view name, fmt::string_view form) {
     text_ += '\n';
@@ -147,7 +147,7 @@ class RecipeExplainer {
   }
 
   std::string text_;
-  /// Name of the table whose keys are told.
+  /// Name of the table whose keys are being explained.
   std::string outer_;
 };
 

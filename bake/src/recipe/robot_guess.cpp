@@ -14,19 +14,19 @@
 namespace galactic::bake {
 namespace {
 
-/// Parts of names by which people tell what grasps and what sees, the surest first.
+/// Parts of names that people give to links that grasp or see, the surest first.
 constexpr std::array<std::string_view, 9> kGraspingNames{
     "grasp", "tcp", "tool", "end_effector", "eef", "ee_", "gripper", "hand", "palm"};
-/// What closes around an object, and is not the hand that carries it.
+/// Parts of names of things that close around an object, unlike the hand that carries them.
 constexpr std::array<std::string_view, 4> kFingerNames{"finger", "fngr", "knuckle", "jaw"};
 constexpr std::array<std::string_view, 4> kCameraNames{"color_optical", "rgb_optical", "optical",
                                                        "camera"};
 constexpr std::array<std::string_view, 3> kLaserNames{"laser", "lidar", "scan"};
-/// Limits as far apart stand for none: radians or meters.
+/// Limits at least this far apart mean that there are none: radians or meters.
 constexpr double kWidestLimits = 100;
-/// How far the spheres stick out of a robot: the tau of a bake, meters.
+/// How far the spheres protrude from a robot: the tau of a bake, meters.
 constexpr float kSphereMargin = 0.04F;
-/// Parts of the robot lower than this, above its lowest point, cover the ground. Meters.
+/// Parts of the robot below this height above its lowest point count for the footprint. Meters.
 constexpr float kBaseHeight = 0.25F;
 
 class RobotGuesser {
@@ -46,7 +46,7 @@ class RobotGuesser {
   }
 
  private:
-  /// Links whose names have one of the parts, those with the surest part first.
+  /// Links whose names contain one of `parts`; those with the surest part come first.
   [[nodiscard]] std::vector<std::size_t> linksNamed(std::span<const std::string_view> parts) const {
     std::vector<std::size_t> found;
     for (const std::string_view part : parts) {
@@ -58,7 +58,7 @@ class RobotGuesser {
     return found;
   }
 
-  /// Whether a link is a finger, or hangs from one.
+  /// Whether a link is a finger, or is below one in the tree.
   [[nodiscard]] bool isFinger(std::size_t link) const {
     for (auto at = static_cast<int>(link); at >= 0;
          at = robot_.links[static_cast<std::size_t>(at)].parent) {
@@ -71,14 +71,14 @@ class RobotGuesser {
     return false;
   }
 
-  /// Whether `carrier` is a link or one above it.
+  /// Whether `carrier` is `link` itself or above it in the tree.
   [[nodiscard]] bool carries(std::size_t carrier, std::size_t link) const {
     auto at = static_cast<int>(link);
     while (at > static_cast<int>(carrier)) at = robot_.links[static_cast<std::size_t>(at)].parent;
     return at == static_cast<int>(carrier);
   }
 
-  /// Whether an action may move the joint above a link.
+  /// Whether an action can move the joint above a link.
   [[nodiscard]] bool canMove(const SourceLink& link) const {
     const bool has_position = link.joint_type == JointType::kRevolute ||
                               link.joint_type == JointType::kContinuous ||
@@ -87,8 +87,8 @@ class RobotGuesser {
     return !link.limits || link.limits->lower < link.limits->upper;
   }
 
-  /// The links below the joints that lead to a link and can move, the root's side first. Joints
-  /// above everything that can be seen or touched are how other simulators drive the base.
+  /// The links below the movable joints that lead to a link, from the root on. Leaves out joints
+  /// above everything that has a shape: with those, other simulators drive the base.
   [[nodiscard]] std::vector<std::size_t> movingChain(std::size_t link) const {
     std::vector<std::size_t> chain;
     for (auto at = static_cast<int>(link); at >= 0;
@@ -123,8 +123,8 @@ class RobotGuesser {
     for (const std::size_t n : movingChain(guess_.end_effector)) addJoint(n);
   }
 
-  /// A joint that leads to the end effector: one for actions, unless it follows the one before it
-  /// or has limits that nobody means.
+  /// Adds a joint that leads to the end effector: it is one for actions, unless it follows the
+  /// joint before it or has limits that cannot be meant.
   void addJoint(std::size_t n) {
     const SourceLink& link = robot_.links[n];
     if (link.limits && link.limits->upper - link.limits->lower > kWidestLimits) {
@@ -136,7 +136,7 @@ class RobotGuesser {
     }
   }
 
-  /// Whether two joints in series slide in one direction, and as far.
+  /// Whether two joints in series slide in the same direction and equally far.
   [[nodiscard]] bool areOneTelescope(std::size_t first, std::size_t second) const {
     constexpr double kSameLimit = 1e-6;
     constexpr float kParallel = 0.999F;
@@ -156,8 +156,8 @@ class RobotGuesser {
            dot(direction(first), direction(second)) > kParallel;
   }
 
-  /// The links below joints that stay where they start: a head, another arm, fingers. Wheels look
-  /// the same however they turn.
+  /// The links below joints that stay where they start: a head, another arm, fingers. Leaves out
+  /// wheels, which look the same however they turn.
   [[nodiscard]] std::vector<std::size_t> restingJoints() const {
     std::vector<std::size_t> resting;
     for (std::size_t n = 0; n < robot_.links.size(); ++n) {
@@ -173,7 +173,8 @@ class RobotGuesser {
     return resting;
   }
 
-  /// The robot's file says that these turn or slide, and then where to.
+  /// The links below joints that the file calls revolute or prismatic, but whose limits are the
+  /// same.
   [[nodiscard]] std::vector<std::size_t> lockedJoints() const {
     std::vector<std::size_t> locked;
     for (std::size_t n = 0; n < robot_.links.size(); ++n) {
@@ -185,8 +186,9 @@ class RobotGuesser {
     return locked;
   }
 
-  /// In front of everything that moves with the end effector, seen from where it is mounted; its
-  /// origin, where that is in front of all, or nothing says where the front is.
+  /// A point in front of everything that is rigidly attached to the end effector, seen from where
+  /// it is mounted. Its origin, if that is in front of everything, or if it is unknown where the
+  /// front is.
   [[nodiscard]] Vec3 graspPoint() const {
     const std::vector<Pose> poses = startPoses();
     const Pose hand_from_root = inverse(poses[guess_.end_effector]);
@@ -201,8 +203,8 @@ class RobotGuesser {
     return forward * std::max(front + kSphereMargin + RobotGuess::kGraspRadius, 0.0F);
   }
 
-  /// From the nearest link above the end effector that is not at the same place, to it: a unit
-  /// vector in the end effector's frame. Zero where there is none.
+  /// The direction to the end effector from the nearest link above it that is at another place: a
+  /// unit vector in the end effector's frame. Zero if there is no such link.
   [[nodiscard]] Vec3 forwardOf(const Pose& hand_from_root, const std::vector<Pose>& poses) const {
     constexpr float kSamePlace = 1e-3F;
     for (int at = robot_.links[guess_.end_effector].parent; at >= 0;
@@ -214,7 +216,7 @@ class RobotGuesser {
     return {};
   }
 
-  /// The link nearest to the root of those that fixed joints join to a link.
+  /// Of all links that fixed joints connect to a link, the one nearest to the root.
   [[nodiscard]] std::size_t bodyOf(std::size_t link) const {
     while (robot_.links[link].parent >= 0 && robot_.links[link].joint_type == JointType::kFixed) {
       link = static_cast<std::size_t>(robot_.links[link].parent);
@@ -224,7 +226,7 @@ class RobotGuesser {
 
   void chooseCamera() {
     guess_.cameras = linksNamed(kCameraNames);
-    // What the file itself calls a camera comes before names.
+    // Links that the file itself calls cameras come before those with fitting names.
     const auto is_camera = [&](std::size_t n) { return robot_.links[n].is_camera; };
     std::erase_if(guess_.cameras, is_camera);
     std::vector<std::size_t> stated;
@@ -243,16 +245,17 @@ class RobotGuesser {
     guess_.camera_roll_degrees = uprightRoll(link, guess_.camera_is_optical);
   }
 
-  /// By how many degrees, in quarters of a turn, a camera on a link is turned about its view for an
-  /// upright image at the start pose. 0 where it looks up or down.
+  /// The roll about the view direction, a multiple of 90 degrees, that makes the image of a camera
+  /// on a link upright at the start pose. 0 if the camera looks up or down.
   [[nodiscard]] int uprightRoll(std::size_t link, bool is_optical) const {
     constexpr float kLooksUpOrDown = 0.9F;
-    /// Of a quarter over another, so that slanted cameras stay as they are.
+    /// Margin by which another roll must be better, so that slanted cameras stay as they are.
     constexpr float kClearlyBetter = 0.1F;
     const auto in_root = [&, pose = startPoses()[link]](const Vec3& v) {
       return rotate(pose.rotation, v);
     };
-    // Of the file's axes: forward is Z, up is -Y; else forward is X, up is Z.
+    // In the file's axes, forward is Z and up is -Y on optical frames; elsewhere forward is X and
+    // up is Z.
     const Vec3 forward = in_root(is_optical ? Vec3{0, 1, 0} : Vec3{1, 0, 0});
     const Vec3 up = in_root(is_optical ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
     const Vec3 left = cross(up, forward);
@@ -268,22 +271,22 @@ class RobotGuesser {
     return best;
   }
 
-  /// root_from_link of each link at the start.
+  /// root_from_link of each link at the start pose.
   [[nodiscard]] std::vector<Pose> startPoses() const {
     std::vector<Pose> poses(robot_.links.size());
     forwardKinematics(flat_.links, {}, flat_.start_positions, poses);
     return poses;
   }
 
-  /// Every surface point of a link, in its frame.
+  /// All vertices of a link's surface, in its frame.
   [[nodiscard]] std::vector<Vec3> surfaceOf(std::size_t n) const {
     const SourceLink& link = robot_.links[n];
     return surfaceOfShapes(robot_, link.collisions.empty() ? link.visuals : link.collisions)
         .positions;
   }
 
-  /// Every surface point of what no action moves, or of the robot if that has none, at the start
-  /// pose, in the root's frame.
+  /// All vertices of the parts that no action moves, or of the whole robot if these have none, at
+  /// the start pose, in the root's frame.
   [[nodiscard]] std::vector<Vec3> basePoints() const {
     const std::vector<Pose> poses = startPoses();
     std::vector<Vec3> base;

@@ -70,12 +70,12 @@ void check(const RecipeSpheres& spheres, RecipeTable& table) {
 template <class T>
 void check(const T& /*table has no two keys that go together*/, RecipeTable& /*table*/) {}
 
-/// Reads the keys of one table, and of the tables in it, into the fields that they stand for.
+/// Reads the keys of one table, and of its subtables, into the corresponding fields.
 class RecipeReader {
  public:
   explicit RecipeReader(RecipeTable& table) : table_(table), errors_(table.errors()) {}
 
-  /// Everything that a table says.
+  /// Reads all keys of a table.
   template <class T>
   static void read(RecipeTable& table, T& fields) {
     RecipeReader reader(table);
@@ -95,7 +95,7 @@ class RecipeReader {
   void number(const RecipeKey& key, std::optional<double>& field, const NumberRange& range) {
     field = table_.number(key.name, range);
   }
-  /// Degrees in the recipe, radians in the field.
+  /// Degrees in the recipe become radians in the field.
   void degrees(const RecipeKey& key, double& field, const NumberRange& range) {
     double typed = field / kRadiansPerDegree;
     number(key, typed, range);
@@ -146,7 +146,7 @@ class RecipeReader {
     const TomlValue* value = table_.find(name);
     return {inner, table_.full(name), value == nullptr ? 0 : value->line, errors_};
   }
-  /// A table of a list or of a table of tables; reports where it is something else.
+  /// Reads a table that is in a list or in a table of tables; reports anything else.
   template <class T>
   void readOne(const TomlValue& entry, const std::string& name, std::string_view form, T& fields) {
     const auto* content = std::get_if<TomlTable>(&entry.value);

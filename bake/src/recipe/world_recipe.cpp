@@ -83,7 +83,7 @@ class WorldRecipeReader {
     return assets;
   }
 
-  /// A text, or a list of texts.
+  /// Reads a text, or a list of texts.
   std::vector<std::string> texts(const TomlEntry& entry) {
     if (isText(entry.value)) return {std::get<std::string>(entry.value.value)};
     std::vector<std::string> found;

@@ -11,44 +11,44 @@
 
 namespace galactic::bake {
 
-/// One table of a recipe: what is baked, and how.
+/// One table of a recipe: what to bake, and how.
 struct RecipeAssets {
-  /// File and line.
+  /// File and line, for messages.
   std::string place;
-  /// Files, folders and patterns (* and ? in any part of the path), as they are written.
+  /// Files, folders and patterns (* and ? in any part of the path), as written in the recipe.
   std::vector<std::string> inputs;
-  /// Whether the inputs are scene datasets, not scenes.
+  /// Whether the inputs are scene datasets rather than scenes.
   bool is_dataset = false;
   std::vector<GivenOption> options;
 };
 
-/// What a world is made of (TOML); docs/worlds.md tells its form.
+/// The contents of a world (TOML); docs/worlds.md describes the format.
 struct WorldRecipe {
-  /// For all scenes, objects and the robot.
+  /// Options for all scenes, objects and the robot.
   std::vector<GivenOption> common;
   /// At least one.
   std::vector<RecipeAssets> scenes;
   std::vector<RecipeAssets> objects;
   std::optional<RecipeAssets> robot;
-  /// With inputs they are imported, without they are generated.
+  /// Episodes are imported if there are inputs, and generated if there are none.
   std::optional<RecipeAssets> episodes;
-  /// What the world says of its task: options of OptionScope::kTask in the order of the option
-  /// table, with their values as listOptions() writes them. Empty where the recipe says nothing.
+  /// The world's own settings for its task: options of OptionScope::kTask in the order of the
+  /// option table, with their values as listOptions() writes them. Empty if the recipe has none.
   std::vector<OptionText> task;
 };
 
-/// Reads a recipe. Keys that are not its own are options of jobs, by their names; they are read
-/// where it is known of which kind of job. Those of [task] are options of galactic-run, and checked
-/// here. Fails with kIo, or with kInvalidInput naming file and line.
+/// Reads a recipe. Keys that do not belong to the recipe itself are options of jobs; they are
+/// interpreted later, when the kind of job is known. Those of [task] are options of galactic-run,
+/// and are checked here. Fails with kIo, or with kInvalidInput and the file and line.
 [[nodiscard]] Result<WorldRecipe> readWorldRecipe(const std::filesystem::path& path);
 
-/// The files and folders that `patterns` name, ascending, each once. A pattern is looked for from
-/// each of `roots` in turn, and the first root where it fits anything counts; absolute ones need
-/// none. Fails with kIo, naming the pattern, where it fits nothing.
+/// The files and folders that match `patterns`, ascending, without repetitions. Tries each of
+/// `roots` in turn for a pattern, and takes the first one where anything matches; absolute patterns
+/// need no root. Fails with kIo, naming the pattern, if nothing matches.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> findInputs(
     const std::vector<std::string>& patterns, const std::vector<std::filesystem::path>& roots);
 
-/// Whether `text` is `pattern`, in which * stands for any characters and ? for one.
+/// Whether `text` matches `pattern`, in which * stands for any characters and ? for one.
 [[nodiscard]] bool fitsPattern(std::string_view text, std::string_view pattern);
 
 }  // namespace galactic::bake
