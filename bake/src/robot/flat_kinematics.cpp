@@ -15,20 +15,21 @@ Vec3 vectorOf(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-/// The nearest float; some files write limits beyond all floats for none.
+/// The nearest float; some files write limits beyond the range of floats to mean that there are
+/// none.
 float nearestFloat(double value) {
   constexpr auto kLargest = static_cast<double>(kUnlimited);
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
 }
 
-/// Limits of each value of a joint: those that are given belong to joints of one value.
+/// Limits of each value of a joint; only joints with a single value have limits.
 PositionLimits positionLimits(const SourceLink& link, const RobotRecipe* recipe) {
   const std::optional<JointLimits> limits = jointLimits(link, recipe);
   if (!limits || positionCount(link.joint_type) != 1) return {-kUnlimited, kUnlimited};
   return {nearestFloat(limits->lower), nearestFloat(limits->upper)};
 }
 
-/// Where the robot's file has a joint rest, else 0, or the limit nearest to it.
+/// The joint's rest position in the robot's file, else 0, or the limit nearest to it.
 float startOf(const SourceLink& link, const PositionLimits& limits) {
   return std::clamp(nearestFloat(link.rest.value_or(0)), limits.lower, limits.upper);
 }
@@ -42,11 +43,11 @@ void addPositions(const SourceLink& link, const RobotRecipe* recipe, LinkFrame& 
     flat.limits.push_back(positionLimits(link, recipe));
     flat.start_positions.push_back(startOf(link, flat.limits.back()));
   }
-  // The quaternion of a floating joint starts as no rotation.
+  // The quaternion of a floating joint starts as the identity.
   if (link.joint_type == JointType::kFloating) flat.start_positions.back() = 1;
 }
 
-/// Where the joint of this name has its value; none where it has no value of its own.
+/// Index of the value of the joint with this name; none if it has no value of its own.
 std::optional<std::size_t> positionOf(const SourceRobot& robot, const FlatKinematics& flat,
                                       const std::string& joint) {
   const auto link =
@@ -59,7 +60,7 @@ std::optional<std::size_t> positionOf(const SourceRobot& robot, const FlatKinema
 }
 
 void applyStartPose(const SourceRobot& robot, const RobotRecipe& recipe, FlatKinematics& flat) {
-  // Narrower limits of the recipe hold from the start.
+  // The start position must respect the recipe's narrower limits, too.
   for (const RecipeJoint& joint : recipe.joints) {
     const auto position = positionOf(robot, flat, joint.joint.name);
     if (!position) continue;

@@ -15,23 +15,23 @@
 namespace galactic::bake {
 namespace {
 
-/// What a robot gets where nobody states a number, and more where gaps would be wide.
+/// The usual number of spheres of a robot if nobody states one; more if gaps would be too wide.
 constexpr std::uint32_t kUsualSpheres = 100;
 
-/// What one group asks for.
+/// What to make for one group.
 struct GroupPlan {
   SphereSetOptions fit;
   TriangleMesh mesh;
   /// In the group's frame.
   std::vector<HandSphere> by_hand;
   bool authored = false;
-  /// All of the mesh is lower than the clip height, so nothing needs cover.
+  /// The whole mesh is below the clip height, so there is nothing to cover.
   bool clipped = false;
 
   [[nodiscard]] bool hasSurface() const { return !mesh.triangles.empty() && !clipped; }
 };
 
-/// What is asked for the robot as a whole, by the recipe or as is usual.
+/// The settings for the whole robot, from the recipe or by default.
 RecipeSpheres spheresOf(const SphereTask& task) {
   return task.recipe == nullptr ? RecipeSpheres() : task.recipe->spheres;
 }
@@ -45,7 +45,7 @@ const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& li
   return found == rules.end() ? nullptr : &*found;
 }
 
-/// Makes the plan of one group after the other.
+/// Makes the plans of groups.
 class Planner {
  public:
   explicit Planner(const SphereTask& task) : task_(task) {
@@ -76,7 +76,7 @@ class Planner {
   }
 
  private:
-  /// What the recipe says of a group's links.
+  /// The recipe's settings for the links of a group.
   struct GroupRule {
     std::optional<double> eps;
     std::optional<double> tau;
@@ -84,7 +84,7 @@ class Planner {
     std::optional<std::uint32_t> max_spheres;
   };
 
-  /// Of several links that state a value, the one nearest to the root has the say.
+  /// If several links state a value, the one nearest to the root wins.
   [[nodiscard]] GroupRule ruleOfGroup(const RigidGroup& group) const {
     GroupRule all;
     for (const std::uint32_t link : group.links) {
@@ -156,7 +156,7 @@ class Planner {
     return {up, height - world_from_group.translation.y};
   }
 
-  /// Whether no part of the mesh is on the side of the plane where spheres may be.
+  /// Whether no part of the mesh is on the side of the plane where spheres are allowed.
   static bool isBeyond(const TriangleMesh& mesh, const HalfSpace& plane) {
     return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                        [&](const Vec3& v) { return dot(plane.normal, v) <= plane.offset; });
@@ -168,7 +168,7 @@ class Planner {
   double clip_height_;
 };
 
-/// The fitter knows no links: says whose mesh it was.
+/// Adds the link to the error, because the fitter does not know whose mesh it was.
 tl::unexpected<Error> ofLink(const std::string& link, Error error) {
   error.where = fmt::format("link '{}': {}", link, error.where);
   return tl::unexpected<Error>(std::move(error));
@@ -195,11 +195,12 @@ Result<void> takeByHand(const GroupPlan& plan, const SphereTask& task, BakedGrou
   return {};
 }
 
-/// The spheres that the groups without hand-made ones may have together.
+/// How many spheres the groups without hand-made ones may have in total.
 struct SphereBudget {
-  /// 0: no limit.
+  /// At most this many; 0 means no limit.
   std::uint32_t most = 0;
-  /// Where nobody stated a number: sets with wider gaps are not taken, whatever it takes. Meters.
+  /// Set if nobody stated a number: takes no sets with wider gaps, however many spheres this costs.
+  /// Meters.
   std::optional<double> widest_gap;
 };
 
@@ -214,24 +215,25 @@ SphereBudget budgetOf(const SphereTask& task, std::size_t by_hand) {
   return budget;
 }
 
-/// A curve is refined while one of its tightest sets, this many, is taken: the next may be worth
-/// more, even where the one before it is not.
+/// A curve is refined as long as one of its finest sets, this many, is chosen: the next set may be
+/// worth more even if the one before it is not.
 constexpr std::size_t kLookAhead = 2;
 
-/// The trade-off curves of all groups that are fitted, and what the budget takes of each.
+/// The trade-off curves of all groups that spheres are fitted to, and the set of each that the
+/// budget chooses.
 class BudgetedCurves {
  public:
   BudgetedCurves(const std::vector<GroupPlan>& plans, const std::vector<RigidGroup>& groups,
                  const SphereTask& task)
       : plans_(plans), groups_(groups), task_(task), curves_(plans.size()) {}
 
-  /// Refines each curve as far as the budget reaches.
+  /// Refines each curve as far as the budget goes.
   Result<void> spend(const SphereBudget& budget) {
     std::vector<std::size_t> wanted;
     for (std::size_t n = 0; n < plans_.size(); ++n) {
       if (!plans_[n].authored && plans_[n].hasSurface()) wanted.push_back(n);
     }
-    // The largest first, so that it does not keep all others waiting at the end.
+    // Starts with the largest, so that all others need not wait for it at the end.
     std::stable_sort(wanted.begin(), wanted.end(),
                      [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
     fitted_ = wanted;
@@ -250,7 +252,7 @@ class BudgetedCurves {
     return {};
   }
 
-  /// The sets that the budget takes, one per group; none where a group is not fitted.
+  /// The chosen sets, one per group; none for groups that no spheres are fitted to.
   [[nodiscard]] std::vector<std::optional<SphereSet>> take() const {
     std::vector<std::optional<SphereSet>> sets(curves_.size());
     parallelFor(task_.threads, fitted_.size(), [&](std::size_t n) {
@@ -272,8 +274,8 @@ class BudgetedCurves {
     return points;
   }
 
-  /// The curves with the widest gaps that are likely. On a large body the points of the search are
-  /// far apart: if all that may lie between them counted, only its finest set would do.
+  /// The curves with the likely widest gaps. On a large body the search points are far apart: if it
+  /// counted everything that may lie between them, only the finest set would pass.
   [[nodiscard]] std::vector<CurvePoints> likelyPoints() const {
     constexpr double kUnlikely = 0.5;
     std::vector<CurvePoints> likely = points();
@@ -306,7 +308,7 @@ class BudgetedCurves {
     }
     auto refined = unlimited ? curves_[group]->finish(threads) : curves_[group]->refine(threads);
     if (refined || !sphere_set::isNothingToCover(refined.error())) return refined;
-    // What reaches above the clip height is too little to be sampled.
+    // The part above the clip height is too small to be sampled.
     curves_[group].reset();
     return {};
   }
@@ -315,7 +317,7 @@ class BudgetedCurves {
   const std::vector<RigidGroup>& groups_;
   const SphereTask& task_;
   std::vector<std::optional<SphereCurve>> curves_;
-  /// Groups that have a curve; without those that turned out to have nothing to cover.
+  /// Groups that have a curve, without those where nothing needed cover.
   std::vector<std::size_t> fitted_;
   std::vector<std::size_t> chosen_;
 };

@@ -45,8 +45,8 @@ class PrimitiveBuilder {
   Surface surface_;
 };
 
-/// Steps of a full circle whose chords stay within `error` of it; a multiple of four, so that the
-/// extremes along the axes are vertices.
+/// Number of steps around a circle that keeps chords within `error` of it; a multiple of four, so
+/// that the extremes along the axes are vertices.
 std::uint32_t circleSteps(double radius, double error) {
   constexpr std::uint32_t kFewest = 16;
   constexpr std::uint32_t kMost = 256;
@@ -77,7 +77,7 @@ void addBox(const BoxShape& box, PrimitiveBuilder& builder) {
   builder.quad(corner[4], corner[5], corner[7], corner[6]);  // +z
 }
 
-/// One ring of vertices around Y.
+/// Adds a ring of vertices around Y.
 std::vector<std::uint32_t> ring(double radius, double y, std::uint32_t steps,
                                 PrimitiveBuilder& builder) {
   std::vector<std::uint32_t> vertices;
@@ -88,7 +88,7 @@ std::vector<std::uint32_t> ring(double radius, double y, std::uint32_t steps,
   return vertices;
 }
 
-/// The band between two rings, `low` below `high`.
+/// Adds the band between two rings, with `low` below `high`.
 void addBand(const std::vector<std::uint32_t>& low, const std::vector<std::uint32_t>& high,
              PrimitiveBuilder& builder) {
   for (std::size_t n = 0; n < low.size(); ++n) {
@@ -97,7 +97,7 @@ void addBand(const std::vector<std::uint32_t>& low, const std::vector<std::uint3
   }
 }
 
-/// Triangles from a ring to one point; `above`: the point lies above the ring.
+/// Adds triangles from a ring to a point; `above` means that the point lies above the ring.
 void addCap(const std::vector<std::uint32_t>& rim, std::uint32_t point, bool above,
             PrimitiveBuilder& builder) {
   for (std::size_t n = 0; n < rim.size(); ++n) {
@@ -121,7 +121,7 @@ void addCylinder(const CylinderShape& cylinder, PrimitiveBuilder& builder) {
 }
 
 void addSphere(const SphereShape& sphere, PrimitiveBuilder& builder) {
-  // The middle of a facet is deep by a chord around and a chord up.
+  // In the middle of a facet the errors of the chords around and along the height add up.
   const std::uint32_t steps = circleSteps(sphere.radius, kTessellationError / 2);
   const std::uint32_t bands = steps / 2;
   std::vector<std::uint32_t> below;

@@ -43,12 +43,13 @@ Affine affineOf(const Pose& pose) {
           d(z.y), d(t.y), d(x.z), d(y.z), d(z.z), d(t.z)};
 }
 
-/// joint_from_link of each link at the start positions: what findRigidGroups needs of moved joints.
+/// joint_from_link of each link at the start positions, as findRigidGroups needs it for joints that
+/// can move.
 std::vector<Affine> startTransforms(const FlatKinematics& flat) {
   std::vector<Pose> parent_from_link(flat.links.size());
   std::vector<Affine> transforms;
   for (std::size_t n = 0; n < flat.links.size(); ++n) {
-    // A link alone, with its joint at the origin.
+    // Treats the link alone, with its joint at the origin.
     LinkFrame link = flat.links[n];
     link.parent = -1;
     link.parent_from_joint = {};
@@ -58,7 +59,7 @@ std::vector<Affine> startTransforms(const FlatKinematics& flat) {
   return transforms;
 }
 
-/// Names that a pack needs: the run finds links and joints by them.
+/// Checks that all names exist: the runtime finds links and joints by name.
 Result<void> checkNames(const SourceRobot& robot, const RobotRecipe* recipe) {
   if (robot.links.empty()) {
     return fail(ErrorCode::kInvalidInput, "", "the robot has no links; give at least one");
@@ -80,7 +81,7 @@ Result<void> checkNames(const SourceRobot& robot, const RobotRecipe* recipe) {
   return {};
 }
 
-/// The working set and the tolerances, also where nothing is fitted.
+/// Checks the working set and the tolerances, even if no spheres are fitted.
 Result<void> checkShapeOptions(const RobotBakeOptions& options) {
   SphereSetOptions asked;
   asked.radii = options.radii;
@@ -89,7 +90,7 @@ Result<void> checkShapeOptions(const RobotBakeOptions& options) {
   return sphere_set::checkOptions(asked);
 }
 
-/// Spheres for a link that is not there would be lost without a word.
+/// Refuses spheres for links that do not exist, which would be lost silently.
 Result<void> checkHandSpheres(const SourceRobot& robot, const RobotBakeOptions& options) {
   if (!options.hand_spheres) return {};
   std::vector<std::string> names;
@@ -104,7 +105,7 @@ Result<void> checkHandSpheres(const SourceRobot& robot, const RobotBakeOptions& 
   return {};
 }
 
-/// Builds a robot part by part.
+/// Bakes a robot part by part.
 class RobotBaker {
  public:
   RobotBaker(const SourceRobot& robot, const RobotRecipe* recipe, const RobotBakeOptions& options,
@@ -132,8 +133,8 @@ class RobotBaker {
   }
 
  private:
-  /// Of limits that the robot's file leaves out, or that let nothing move, unless the recipe states
-  /// others.
+  /// Warns of limits that the robot's file lacks, or that allow no movement, unless the recipe
+  /// replaces them.
   void warnOfLimits() {
     for (const SourceLink& link : robot_.links) {
       if (!link.limits || link.mimic) continue;
@@ -166,7 +167,7 @@ class RobotBaker {
 
   Result<void> makeSpheres() {
     const detail::Stopwatch timer(baked_.times.spheres);
-    // Where a link has no collision geometry, what is seen of it stands in.
+    // Visual geometry stands in for missing collision geometry.
     std::vector<Surface> fitted;
     for (std::size_t n = 0; n < robot_.links.size(); ++n) {
       const bool has_collision = !baked_.collision_surfaces[n].empty();
@@ -186,8 +187,8 @@ class RobotBaker {
                 "`package`, or spheres in a recipe");
   }
 
-  /// Poses at the start, the robot standing on the ground: at the recipe's height, else with its
-  /// lowest point at height 0.
+  /// Poses of the links at the start, with the robot standing on the ground: at the recipe's
+  /// height, or else with its lowest point at height 0.
   std::vector<Pose> startPoses(const std::vector<Surface>& surfaces) const {
     std::vector<Pose> poses(robot_.links.size());
     const FlatKinematics& flat = baked_.kinematics;
@@ -233,12 +234,12 @@ class RobotBaker {
     }
   }
 
-  /// Where a sphere that moves with the hand is, no object can be grasped.
+  /// Warns if the grasp point is inside a sphere that moves with the hand: no object can be there.
   void warnOfGraspInside(const EndEffector& hand) {
     const FlatKinematics& flat = baked_.kinematics;
     std::vector<Pose> root_from_link(flat.links.size());
     forwardKinematics(flat.links, {}, flat.start_positions, root_from_link);
-    // Each link is in one.
+    // Each link is in exactly one group.
     const auto group = std::ranges::find_if(baked_.groups, [&](const BakedGroup& one) {
       return std::ranges::find(one.links, hand.link) != one.links.end();
     });

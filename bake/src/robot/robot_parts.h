@@ -11,10 +11,11 @@
 
 namespace galactic::bake {
 
-/// No point of a tessellated cylinder or sphere is further than this from the shape. Meters.
+/// The greatest distance between the surface of a tessellated cylinder or sphere and the shape.
+/// Meters.
 inline constexpr double kTessellationError = 1e-4;
 
-/// What a link without a color of its own looks like, linear RGBA.
+/// Color of links that have none of their own, linear RGBA.
 inline constexpr std::array<float, 4> kPlainColor{0.55F, 0.55F, 0.57F, 1.0F};
 
 /// A box, cylinder or sphere as a surface in the link's frame; empty for a mesh.
@@ -26,13 +27,13 @@ inline constexpr std::array<float, 4> kPlainColor{0.55F, 0.55F, 0.57F, 1.0F};
 [[nodiscard]] Surface surfaceOfShapes(const SourceRobot& robot,
                                       const std::vector<LinkShape>& shapes);
 
-/// What is drawn of a link: its visuals, or its collisions where all visuals were lost. A link
-/// without any in its file is not drawn.
+/// The shapes that are drawn of a link: its visuals, or its collisions if all visuals were lost.
+/// Links without visuals in the robot's file are not drawn.
 [[nodiscard]] const std::vector<LinkShape>& drawnShapes(const SourceLink& link);
 
 /// Links that count as one rigid body.
 struct RigidGroup {
-  /// The link nearest to the root: the frame of the group.
+  /// The link nearest to the root, whose frame is that of the group.
   std::uint32_t link = 0;
   /// Ascending, `link` first.
   std::vector<std::uint32_t> links;
@@ -40,28 +41,29 @@ struct RigidGroup {
   std::vector<Affine> group_from_link;
 };
 
-/// The groups of `robot`, by ascending first link: links joined by fixed joints, and those that the
-/// recipe (may be null) merges with their parent. Where a merged joint can move, the group has its
-/// shape at `start`: the transform joint_from_link of each link at the start positions.
+/// The groups of `robot`, by ascending first link: links connected by fixed joints, and those that
+/// the recipe (may be null) merges with their parent. If a merged joint can move, the shape of its
+/// group is that at `start`, which holds joint_from_link of each link at the start positions.
 [[nodiscard]] std::vector<RigidGroup> findRigidGroups(const SourceRobot& robot,
                                                       const RobotRecipe* recipe,
                                                       const std::vector<Affine>& start);
 
-/// The rigid transform as the runtime holds it. Exact to float rounding.
+/// The rigid transform in the representation of the runtime. Exact except for float rounding.
 [[nodiscard]] Pose poseOf(const Affine& rigid);
 
-/// Links, limits and start positions of `robot` as the runtime reads them. A joint that mimics
-/// another has no position of its own. Joints start where the robot's file has them
-/// rest, else at 0, or at their limit nearest to it, those of `recipe` (may be null) included,
-/// unless the recipe's start pose says otherwise.
+/// Links, limits and start positions of `robot` in the form that the runtime reads. A joint that
+/// mimics another has no position of its own. The start position of a joint is the one in the
+/// recipe's start pose, if any, or else its rest position in the robot's file, or else 0; moved to
+/// the nearest limit, including those of `recipe` (may be null), if it is outside.
 [[nodiscard]] FlatKinematics flattenKinematics(const SourceRobot& robot, const RobotRecipe* recipe);
 
-/// Joint vectors tried to find out which groups can touch.
+/// Number of joint vectors that are tried to find out which groups can touch.
 inline constexpr std::size_t kSelfCollisionSamples = 4000;
 
-/// What each pair of groups with spheres does over the start pose and random joint vectors within
-/// the limits (a full turn where there is none), from a fixed seed. Groups joined by a joint are
-/// adjacent; `ignored` holds ascending pairs of links that may touch. Deterministic.
+/// Classifies each pair of groups with spheres by trying the start pose and random joint vectors
+/// within the limits (a full turn if there are none), from a fixed seed. Groups joined by a joint,
+/// directly or through groups without spheres, are adjacent; `ignored` holds pairs of links that
+/// may touch. Deterministic.
 [[nodiscard]] std::vector<BakedPair> classifyPairs(
     const BakedRobot& robot, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& ignored);
 

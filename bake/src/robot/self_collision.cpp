@@ -9,7 +9,7 @@
 namespace galactic::bake {
 namespace {
 
-/// A sphere of a group in the world.
+/// A sphere of a group, in the world.
 struct Ball {
   Vec3 center;
   float radius = 0;
@@ -21,7 +21,7 @@ bool overlap(const Ball& a, const Ball& b) {
   return dot(between, between) < reach * reach;
 }
 
-/// The ball around a group's spheres, in the group's frame.
+/// The bounding sphere of a group's spheres, in the group's frame.
 Ball boundingBall(const BakedGroup& group, const std::vector<float>& radii) {
   Vec3 sum;
   for (const SetSphere& sphere : group.spheres.spheres) sum = sum + sphere.center;
@@ -34,7 +34,7 @@ Ball boundingBall(const BakedGroup& group, const std::vector<float>& radii) {
   return ball;
 }
 
-/// Counts touches of all pairs over many poses.
+/// Tests whether the spheres of two groups touch in a pose.
 class PairSampler {
  public:
   explicit PairSampler(const BakedRobot& robot)
@@ -104,7 +104,7 @@ std::vector<std::size_t> groupOfLinks(const BakedRobot& robot) {
   return group_of;
 }
 
-/// Pairs of groups that a joint joins, directly or through groups without spheres.
+/// Pairs of groups that a joint connects, directly or through groups without spheres.
 std::vector<std::pair<std::size_t, std::size_t>> adjacentGroups(
     const BakedRobot& robot, const std::vector<std::size_t>& group_of) {
   std::vector<std::pair<std::size_t, std::size_t>> adjacent;
@@ -136,7 +136,7 @@ std::vector<BakedPair> pairsWithSpheres(const BakedRobot& robot) {
   return pairs;
 }
 
-/// Decides the pairs that are still to be tested by what they do in many poses.
+/// Decides the pairs that are still to be tested by sampling many poses.
 void samplePairs(const BakedRobot& robot, std::vector<BakedPair>& pairs) {
   std::vector<std::size_t> touches(pairs.size());
   PairSampler sampler(robot);

@@ -8,7 +8,7 @@
 namespace galactic::bake {
 namespace {
 
-/// The widest gap may cost this share of the least error.
+/// The share of the least error that narrower gaps may cost.
 constexpr double kEvenness = 0.1;
 
 std::size_t coarsestCount(const std::vector<CurvePoints>& curves) {
@@ -36,7 +36,7 @@ std::vector<std::size_t> finestSets(const std::vector<CurvePoints>& curves) {
   return chosen;
 }
 
-/// All sets together: spheres and errors added up, and the widest gap of any.
+/// The total of the chosen sets: the sums of spheres and errors, and the widest gap of any.
 CurvePoint chosenOf(const std::vector<CurvePoints>& curves,
                     const std::vector<std::size_t>& chosen) {
   CurvePoint all;
@@ -50,8 +50,8 @@ CurvePoint chosenOf(const std::vector<CurvePoints>& curves,
   return all;
 }
 
-/// The least error of the first curves for each number of spheres, and the set of the last of them
-/// that gives it. Curves are added one by one.
+/// For each number of spheres, the least error of the curves added so far, and the set of the last
+/// curve that gives it.
 class BudgetTable {
  public:
   explicit BudgetTable(std::size_t most) : least_(most + 1, 0) {}
@@ -75,7 +75,8 @@ class BudgetTable {
     choices_.push_back(std::move(choice));
   }
 
-  /// The sets of all curves that were added, with at most this many spheres.
+  /// The best choice of sets, one for each curve, with at most as many spheres as the table has
+  /// room for.
   [[nodiscard]] std::vector<std::size_t> best(const std::vector<CurvePoints>& curves) const {
     std::vector<std::size_t> chosen(curves.size(), 0);
     std::size_t left = least_.size() - 1;
