@@ -5,8 +5,8 @@
 namespace galactic::bake {
 
 void setStart(const RobotStart& start, Episode& episode) {
-  // Put between the floor and the base's point on it, meters, so that rounding never leaves the
-  // point under the floor; far below what the run counts as a step.
+  // Distance in meters that lifts the base off the floor, so that rounding never puts it below; far
+  // less than what a run counts as a step.
   constexpr float kFloorMargin = 1e-4F;
   episode.base_position = start.base_position;
   episode.base_position.y += kFloorMargin;

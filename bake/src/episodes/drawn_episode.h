@@ -12,35 +12,35 @@
 
 namespace galactic::bake {
 
-/// What became of one episode.
+/// The result of drawing one episode.
 struct DrawnEpisode {
-  /// Which one of all.
+  /// Its number among all episodes.
   std::size_t number = 0;
-  /// Of its own stream of random numbers, so that no episode depends on another.
+  /// Seed of its own stream of random numbers, so that no episode depends on another.
   std::uint64_t seed = 0;
-  /// Whether it found no place.
+  /// Whether no place was found for it.
   bool is_skipped = false;
   std::uint32_t drafts = 0;
   std::uint32_t replays_failed = 0;
-  /// How many drafts ended at each part.
+  /// Number of drafts that ended at each part.
   std::array<std::uint32_t, kDraftEnds> ends{};
   RejectionCounts rejections{};
-  /// As in a set of which it is the first; its scene is not said.
+  /// As in a set in which it is the first episode; its scene is not set.
   Episode episode{};
   std::vector<Placement> placements{};
 };
 
-/// Puts the robot where it starts.
+/// Sets where the robot starts.
 void setStart(const RobotStart& start, Episode& episode);
 
-/// Takes over what was drafted.
+/// Copies a draft into the episode.
 void setDraft(const DraftedEpisode& draft, DrawnEpisode& episode);
 
-/// Names, but no episodes.
+/// A set with names but without episodes.
 [[nodiscard]] SourceEpisodes emptySet(const GenerationWorld& world,
                                       std::span<const SceneOfPack* const> scenes);
 
-/// Adds an episode in the scene of that number.
+/// Adds an episode; `scene` is the number of its scene in the set.
 void append(const DrawnEpisode& drawn, std::uint32_t scene, SourceEpisodes& episodes);
 
 }  // namespace galactic::bake

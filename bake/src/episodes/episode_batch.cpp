@@ -9,8 +9,9 @@
 namespace galactic::bake {
 namespace {
 
-/// Drafts of one episode: so many with places drawn anywhere, then near places that are known to
-/// hold objects, then with fewer objects; after the last of them it is skipped.
+/// Numbers of drafts of one episode: up to the first number places are drawn anywhere, up to the
+/// second near places that are known to hold objects, and up to the last with fewer objects if need
+/// be. After that the episode is skipped.
 constexpr std::uint32_t kDraftsAnywhere = 50;
 constexpr std::uint32_t kDraftsWithAll = 100;
 constexpr std::uint32_t kDrafts = 150;

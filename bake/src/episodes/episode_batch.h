@@ -9,28 +9,28 @@
 
 namespace galactic::bake {
 
-/// Draws a batch of episodes in a scene and replays them until all stand.
+/// Draws a batch of episodes in a scene and replays them, until all succeed or are skipped.
 class EpisodeBatch {
  public:
-  /// Episodes that are replayed together: enough for the simulator's chunks, few enough for threads
-  /// to share a scene's episodes.
+  /// Number of episodes that are replayed together: enough for the simulator's chunks, and few
+  /// enough that threads can share a scene's episodes.
   static constexpr std::size_t kMost = 64;
 
-  /// The references outlive it.
+  /// The references must outlive this.
   EpisodeBatch(const GenerationContext& context, const SceneOfPack& scene,
                const PreparedScene& prepared);
 
-  /// `episodes`: their numbers and seeds are given. Fails with the errors of replayEpisodes.
+  /// Draws `episodes`, whose numbers and seeds are set. Fails with the errors of replayEpisodes.
   /// Thread-safe for different episodes.
   [[nodiscard]] Result<void> fill(std::span<DrawnEpisode> episodes) const;
 
  private:
-  /// An episode in the making.
+  /// An episode in progress.
   struct Pending;
 
-  /// Drafts until a draft succeeds, or the episode is skipped.
+  /// Makes drafts until one succeeds, or skips the episode.
   void draw(Pending& pending) const;
-  /// Sees which of them stand.
+  /// Finds out which episodes start and stay still in the runtime.
   [[nodiscard]] Result<void> replay(std::span<Pending* const> open) const;
 
   const GenerationContext& context_;

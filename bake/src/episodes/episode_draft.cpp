@@ -15,9 +15,10 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::size_t kObjectTries = 300;
-/// Of places for which only a distance is calculated.
+/// Limit for all draws of a goal's place, including those that a cheap check of surface and
+/// distance rejects.
 constexpr std::size_t kDistanceTries = 10000;
-/// Of a survey: tries to find a goal for one target, and pairs that are enough.
+/// For a survey: tries to find a goal for one target, and the number of pairs that suffices.
 constexpr std::size_t kGoalTries = 100;
 constexpr std::size_t kEnoughPairs = 32;
 constexpr float kTurn = 2 * std::numbers::pi_v<float>;
@@ -27,9 +28,9 @@ using BodySpheres = std::vector<BodySphere>;
 /// Cosine of the angle by which the up axis of an object leans.
 float uprightness(const StablePose& pose) { return rotate(pose.rotation, {0, 1, 0}).y; }
 
-/// The least uprightness of poses that may be drawn.
+/// The least uprightness of the poses that may be drawn.
 float leastUprightness(const ObjectModel& model, PoseChoice choice) {
-  // Of an object that stands askew on its bottom: the cosine of 15 degrees.
+  // For an object that stands askew on its bottom: the cosine of 15 degrees.
   constexpr float kUpright = 0.966F;
   if (choice == PoseChoice::kDropped) return -std::numeric_limits<float>::infinity();
   float most = -1;
@@ -37,7 +38,7 @@ float leastUprightness(const ObjectModel& model, PoseChoice choice) {
   return std::min(most, kUpright);
 }
 
-/// A stable pose, of those that may be drawn each as likely as drops end in it.
+/// Draws a stable pose among the permitted ones, each with the likelihood that drops end in it.
 const StablePose& drawStablePose(const ObjectModel& model, PoseChoice choice, Random& random) {
   const float least = leastUprightness(model, choice);
   const auto likelihood = [least](const StablePose& pose) {
@@ -50,7 +51,7 @@ const StablePose& drawStablePose(const ObjectModel& model, PoseChoice choice, Ra
     left -= likelihood(pose);
     if (left < 0) return pose;
   }
-  // Rounding left something of the total.
+  // Rounding left a rest of the total.
   return *std::ranges::max_element(model.stable_poses, {}, likelihood);
 }
 
@@ -58,11 +59,11 @@ bool isWithin(float distance, const DistanceRange& range) {
   return distance >= range.least && distance <= range.most;
 }
 
-/// How far an object may still be put from the place that is drawn for it, meters: what settling
-/// allows, and the cell's half diagonal is added to it.
+/// How far settling may move an object from the place that was drawn for it, meters; half the
+/// diagonal of a cell comes on top of this.
 constexpr float kAside = kSettlingWay;
 
-/// What is put where.
+/// An object to put, and its stable pose.
 struct Wanted {
   std::uint32_t object = 0;
   const StablePose* stable = nullptr;
@@ -74,7 +75,7 @@ struct Draw {
   SupportPlace place;
 };
 
-/// One draft of an episode: what stands where so far.
+/// One draft of an episode, with what has been placed so far.
 class Draft {
  public:
   Draft(const DraftHome& home, const DraftEase& ease, Random& random, RejectionCounts& rejections)
@@ -91,7 +92,7 @@ class Draft {
 
   void chooseTarget() { wanted_ = drawObject(); }
 
-  /// Puts the chosen target on this place, if it stands there and is reached.
+  /// Puts the chosen target on this place, if it stands there and can be reached.
   bool tryTarget(const SupportPlace& place) {
     const auto draw = stand(wanted_, place);
     if (!draw || !isReached(*draw)) return false;
@@ -124,11 +125,11 @@ class Draft {
     return true;
   }
 
-  /// Where the goal may be, as far as surface and distance tell.
+  /// Places where the goal may be, judged by surface and distance alone.
   struct GoalPlaces {
     /// Indices into SupportPlaces::places().
     std::vector<std::uint32_t> found;
-    /// Why the other places are none: the fault that is looked for last.
+    /// Why the other places are not suitable: of their faults, the one that is checked last.
     EpisodeRejection fault = EpisodeRejection::kOtherPart;
   };
   [[nodiscard]] GoalPlaces goalPlaces() const {
@@ -174,7 +175,7 @@ class Draft {
     return true;
   }
 
-  /// The episode, the target at a random index.
+  /// The episode, with the target at a random index.
   [[nodiscard]] DraftedEpisode finish() {
     const auto count = static_cast<std::uint32_t>(others_.size() + 1);
     DraftedEpisode episode{
@@ -184,14 +185,14 @@ class Draft {
   }
 
  private:
-  /// Somewhere in a cell: a share of its size between -1/2 and 1/2.
+  /// A random offset within a cell, as a share of its size between -1/2 and 1/2.
   float aside() { return static_cast<float>(random_.unit()) - 0.5F; }
 
   [[nodiscard]] const ObjectModel& modelOf(const Wanted& wanted) const {
     return home_.objects[wanted.object];
   }
 
-  /// Any place, or, half of the time, one that was proven as this end of the way.
+  /// Draws any place or, half of the time, one that is proven for this end of the way.
   const SupportPlace& drawPlace(std::uint32_t ProvenPair::*end) {
     if (ease_.proven.empty() || random_.below(2) == 0) return home_.supports.draw(random_);
     const std::uint32_t pair = random_.below(static_cast<std::uint32_t>(ease_.proven.size()));
@@ -208,7 +209,8 @@ class Draft {
     return false;
   }
 
-  /// A spot on the place, turned at random, if the object stands there and stays.
+  /// Puts the object somewhere on the place, turned at random; none if it does not stand or stay
+  /// there.
   std::optional<Draw> stand(const Wanted& wanted, const SupportPlace& place) {
     const float spacing = home_.scene.grids().front().spacing();
     Spot spot{.x = place.x + spacing * aside(),
@@ -229,7 +231,8 @@ class Draft {
     return std::nullopt;
   }
 
-  /// The object at `spot`, whose height is corrected, if it is flat and free there.
+  /// The object at `spot`, whose height this corrects; none if the surface is not flat and free
+  /// there.
   std::optional<PlacedObject> put(const Wanted& wanted, Spot& spot) {
     const ObjectModel& model = modelOf(wanted);
     const PlacedObject roughly = placeObject(model, wanted.object, *wanted.stable, spot);
@@ -252,12 +255,12 @@ class Draft {
     return object;
   }
 
-  /// Whether rays, where there are any, see no gap and no bump under the object.
+  /// Whether rays find no gap and no bump under the object; true if there are no rays.
   [[nodiscard]] bool isEven(const Footprint& print, float surface) const {
     return home_.rays == nullptr || home_.rays->isEven(print, surface, home_.options.flatness);
   }
 
-  /// Where the object comes to rest when it is let go: moved and turned a little.
+  /// The spot where the object comes to rest after it is let go, moved and turned a little.
   std::optional<Spot> settledSpot(const PlacedObject& object, const StablePose& stable,
                                   const Spot& spot) {
     const Settled settled = home_.settling->settle(home_.bodies[object.object], object.pose);
@@ -266,7 +269,7 @@ class Draft {
                                                           : EpisodeRejection::kMoved);
       return std::nullopt;
     }
-    // The object's turn about the vertical; what it leans is too little to see.
+    // The object's rotation about the vertical; it leans too little for this to be visible.
     const Quat turn = settled.pose.rotation * conjugate(stable.rotation);
     return Spot{.x = settled.pose.translation.x,
                 .z = settled.pose.translation.z,
@@ -274,7 +277,7 @@ class Draft {
                 .yaw = 2 * std::atan2(turn.y, turn.w)};
   }
 
-  /// Why the goal cannot be anywhere in the place's cell; nothing where it could.
+  /// Why the goal cannot be anywhere in the place's cell; none if it could be.
   [[nodiscard]] std::optional<EpisodeRejection> goalFault(const SupportPlace& place) const {
     if (place.part != target_part_) return EpisodeRejection::kOtherPart;
     if (home_.options.goal_on_other_support && place.surface_id == target_surface_) {
@@ -298,7 +301,7 @@ class Draft {
     return reject(EpisodeRejection::kOverlap);
   }
 
-  /// Remembers the position of the robot that reaches the object.
+  /// Whether the robot reaches the object; if so, remembers the position in which it does.
   bool isReached(const Draw& draw) {
     auto spheres = findReach(home_, draw.object, draw.place, random_);
     if (!spheres) return reject(EpisodeRejection::kNotReached);
@@ -334,15 +337,15 @@ class Draft {
   const DraftEase& ease_;
   Random& random_;
   RejectionCounts& rejections_;
-  /// The target.
+  /// The object and the stable pose of the target.
   Wanted wanted_;
   PlacedObject target_;
   std::uint32_t target_surface_ = 0;
-  /// FloorPlace::part, in which the whole episode is played.
+  /// FloorPlace::part where the whole episode takes place.
   std::uint32_t target_part_ = 0;
   PlacedObject goal_;
   std::vector<PlacedObject> others_;
-  /// The robot where it reaches target and goal.
+  /// Spheres of the robot in the positions in which it reaches target and goal.
   std::vector<BodySpheres> reaching_;
   RobotStart start_;
 };
@@ -352,7 +355,7 @@ class Draft {
 PairSearch findProvenPairs(const DraftHome& home) {
   PairSearch search;
   const auto count = static_cast<std::uint32_t>(home.supports.places().size());
-  // The stream is no episode's.
+  // A stream that no episode uses.
   Random random(~home.options.seed);
   const DraftEase anywhere;
   std::size_t tries = 0;

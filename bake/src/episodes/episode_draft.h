@@ -16,27 +16,27 @@
 
 namespace galactic::bake {
 
-/// Objects keep this distance between their boxes, meters.
+/// Least distance between the boxes of objects, meters.
 inline constexpr float kObjectGap = 0.05F;
-/// Share of the grasp radius within which the grasp point of a test of reach comes to the box: a
-/// run counts what is nearer than the whole radius, and moves in floats of its own.
+/// Share of the grasp radius within which the grasp point must come to the box in tests of reach. A
+/// run uses the whole radius, but rounds its moves differently.
 inline constexpr float kGraspShare = 0.8F;
 
-/// Everything of a scene that drafts read. The references outlive it.
+/// The parts of a scene that drafts read. The references must outlive this.
 struct DraftHome {
   const Scene& scene;
-  /// Ascending names.
+  /// By ascending name.
   std::span<const ObjectModel> objects;
   const Robot& robot;
   const FloorMap& floor;
   const ArmReach& reach;
   const SupportPlaces& supports;
-  /// Where the scene's triangles are known, else null and empty; one body per object.
+  /// Set if the scene's triangles are known, else null and empty; `bodies` has one per object.
   const SurfaceRays* rays = nullptr;
   const SettlingScene* settling = nullptr;
   std::span<const SettlingBody> bodies;
   const EpisodeGeneratorOptions& options;
-  /// Distance of the target's origin at its start and at its goal, in this scene.
+  /// Distance between the target's origin at its start and at its goal, for this scene.
   DistanceRange target_to_goal;
 };
 
@@ -48,46 +48,47 @@ struct DraftedEpisode {
   RobotStart start;
 };
 
-/// The part of a draft that found no place.
+/// The part of a draft for which no place was found.
 enum class DraftEnd : std::uint8_t { kDone, kTarget, kGoal, kOthers, kStart };
 inline constexpr std::size_t kDraftEnds = 5;
 
 inline constexpr std::size_t kSurveyTries = 20'000;
 
-/// Two places, as indices into SupportPlaces::places(), at which some object stood and was reached,
-/// at a distance that suits target and goal.
+/// Two places, as indices into SupportPlaces::places(), where an object stood and was reached, at a
+/// distance that suits target and goal.
 struct ProvenPair {
   std::uint32_t target = 0;
   std::uint32_t goal = 0;
 };
 
-/// What a search for proven pairs found.
+/// Result of the search for proven pairs.
 struct PairSearch {
-  /// Empty where the scene is all but hopeless.
+  /// Empty only if the scene is nearly hopeless.
   std::vector<ProvenPair> pairs;
-  /// Targets that stood at their place and were reached.
+  /// Number of targets that stood at their place and were reached.
   std::size_t reached_targets = 0;
-  /// What was drawn and not taken, one reason for each try: of a target for which no place is a
-  /// goal, why the place that came nearest to it is none.
+  /// Draws that were rejected, with one reason for each try. For a target without any place for its
+  /// goal, this is the reason why the place that came nearest to being one is not.
   RejectionCounts rejections;
 };
 
-/// Looks for proven pairs in kSurveyTries tries, by going from places that held an object to all
-/// those at the right distance. Depends on the home only.
+/// Looks for proven pairs in kSurveyTries tries: finds places that hold an object, and from each
+/// tries those at the right distance. Depends only on `home`.
 [[nodiscard]] PairSearch findProvenPairs(const DraftHome& home);
 
-/// What a draft may make use of, and do without, after others have failed.
+/// Ways to make a draft easier after others have failed.
 struct DraftEase {
-  /// Target and goal are put near these half of the time, other objects as well; empty: anywhere.
+  /// Half of the time, target and goal are put near these pairs, and so are other objects; if
+  /// empty, all are put anywhere.
   std::span<const ProvenPair> proven;
-  /// Whether to make do with the objects that find a place, the target among them.
+  /// Whether to accept fewer objects if others find no place; the target must find one.
   bool may_lack_objects = false;
 };
 
-/// Tries once to draw an episode: the target, its goal, the other objects, the start. Target and
-/// goal are taken only where a position of base and arm was found in which the grasp point is at
-/// the box, and neither the scene nor any object is touched; the other objects keep clear of it.
-/// Adds up in `rejections` what was drawn and not taken. The result depends on the arguments only.
+/// Tries once to draw an episode: the target, its goal, the other objects, the start. Accepts a
+/// target or goal only if it finds a position of base and arm that brings the grasp point to the
+/// box and touches neither the scene nor any object; the other objects keep clear of that position.
+/// Counts draws that were rejected in `rejections`. The result depends only on the arguments.
 [[nodiscard]] DraftEnd draftEpisode(const DraftHome& home, const DraftEase& ease, Random& random,
                                     DraftedEpisode& episode, RejectionCounts& rejections);
 

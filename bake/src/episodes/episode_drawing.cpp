@@ -24,7 +24,7 @@ Result<void> firstFailure(std::span<const Result<void>> results) {
   return {};
 }
 
-/// Cuts episodes into batches.
+/// Splits episodes into batches.
 std::vector<std::span<DrawnEpisode>> batchesOf(std::span<DrawnEpisode> episodes) {
   std::vector<std::span<DrawnEpisode>> batches;
   for (; !episodes.empty(); episodes = episodes.subspan(batches.back().size())) {
@@ -35,7 +35,7 @@ std::vector<std::span<DrawnEpisode>> batchesOf(std::span<DrawnEpisode> episodes)
 
 }  // namespace
 
-/// A scene at work, which is prepared when somebody needs that.
+/// A scene in progress, which is prepared when this is first needed.
 class EpisodeDrawing::SceneWork {
  public:
   SceneWork(const GenerationContext& context, const SceneJournal& journal, const SceneOfPack& scene,
@@ -89,8 +89,8 @@ Result<EpisodeDrawing::Outcome> EpisodeDrawing::run(std::vector<DealtScene> deal
   return outcomeOf(std::move(results));
 }
 
-/// How many scenes fit into memory together: more threads would wait for their turn instead of
-/// drawing in the scenes of others.
+/// How many scenes fit into memory at the same time. More threads than this would wait for their
+/// turn, while they could help to draw in the scenes of others.
 unsigned EpisodeDrawing::scenesAtOnce(std::span<const DealtScene> deal) const {
   std::uint64_t fitting = deal.size();
   if (inputs_.memory != nullptr) {
@@ -154,7 +154,8 @@ Result<void> EpisodeDrawing::fill(std::span<DrawnEpisode> episodes, SceneWork& w
 }
 
 Result<EpisodeDrawing::Outcome> EpisodeDrawing::outcomeOf(std::vector<SceneResult> results) const {
-  // All scenes are looked at, whatever the others are like: the first error is always the same.
+  // All scenes are looked at, whatever happens in the others, so the first error is always the
+  // same.
   for (const SceneResult& result : results) {
     if (!result) return tl::unexpected(result.error());
   }
@@ -173,7 +174,7 @@ Result<EpisodeDrawing::Outcome> EpisodeDrawing::outcomeOf(std::vector<SceneResul
       if (!*tried && !failure) failure = tried->error();
     }
   }
-  // Whether anything went wrong beside an unusable scene depends on how far it came.
+  // Besides an unusable scene, other errors depend on how far their scenes got: ignore them.
   if (!unusable.empty() && state_ != State::kFailed) return Outcome(std::move(unusable));
   if (failure) return tl::unexpected(std::move(*failure));
   return Outcome(std::move(drawn));

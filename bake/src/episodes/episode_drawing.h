@@ -15,7 +15,7 @@
 
 namespace galactic::bake {
 
-/// A scene and the episodes that are dealt to it: their numbers and seeds.
+/// A scene and the episodes assigned to it, with their numbers and seeds.
 struct DealtScene {
   const SceneOfPack* scene = nullptr;
   std::vector<DrawnEpisode> episodes{};
@@ -27,45 +27,45 @@ struct DrawnScene {
   std::vector<DrawnEpisode> episodes{};
 };
 
-/// Reads what is known of a scene; nothing where nobody knows.
+/// Reads what is known about a scene; empty if nothing is.
 [[nodiscard]] Result<SceneDetails> detailsOf(const EpisodeInputs& inputs, const SceneOfPack& scene);
 
-/// Draws episodes in the scenes that they were dealt to, or finds that they were drawn before.
+/// Draws episodes in the scenes that they were dealt to, or recalls those that the journal holds.
 class EpisodeDrawing {
  public:
-  /// What was drawn, in the order of the deal; or the scenes in which there can be no episodes:
-  /// then they are to be dealt anew, and what was drawn beside them is no matter.
+  /// The drawn episodes, in the order of the deal; or the scenes in which there can be no episodes,
+  /// in which case all episodes must be dealt anew, and any that were drawn are dropped.
   using Outcome = std::variant<std::vector<DrawnScene>, std::vector<UnusableScene>>;
 
-  /// The references outlive it.
+  /// The references must outlive this.
   EpisodeDrawing(const EpisodeInputs& inputs, const GenerationContext& context,
                  const SceneJournal& journal, const EpisodeProgress& progress)
       : inputs_(inputs), context_(context), journal_(journal), progress_(progress) {}
 
-  /// Called once. Fails with the errors of reading and preparing a scene, of drawing in it, and of
-  /// the journal, and with kInterrupted.
+  /// May be called once. Fails with the errors of reading and preparing a scene, of drawing in it
+  /// and of the journal, and with kInterrupted.
   [[nodiscard]] Result<Outcome> run(std::vector<DealtScene> deal);
 
  private:
   class SceneWork;
 
-  /// What became of one scene: nothing where it was only looked at, or not begun; or what was
-  /// drawn, or why it could not be. An error where the scene cannot be looked at.
+  /// The result for one scene: nothing if it was only looked at, or not begun; otherwise what was
+  /// drawn, or why nothing could be. It is an error if the scene cannot be looked at.
   using InScene = std::variant<std::monostate, UnusableScene, Result<DrawnScene>>;
   using SceneResult = Result<InScene>;
 
-  /// What is still done. It only ever goes on to a later one.
+  /// How much is still to be done. The state only ever moves to a later one.
   enum class State : std::uint8_t {
     kDrawing,  ///< Everything.
-    kLooking,  ///< Some scene is unusable: the others are looked at only.
-    kStopped,  ///< Nothing: somebody asked for it.
-    kFailed,   ///< Nothing: what is done cannot be kept.
+    kLooking,  ///< Some scene is unusable: only look at the others.
+    kStopped,  ///< Nothing, because somebody asked to stop.
+    kFailed,   ///< Nothing, because results cannot be saved.
   };
 
   [[nodiscard]] unsigned scenesAtOnce(std::span<const DealtScene> deal) const;
-  /// Looks at the scene, draws its episodes with `threads` threads, and forgets the scene.
+  /// Looks at the scene, draws its episodes with `threads` threads, and releases the scene.
   [[nodiscard]] SceneResult runIn(DealtScene dealt, unsigned threads);
-  /// Draws those of the scene's episodes that were not drawn before.
+  /// Draws those of the scene's episodes that the journal does not hold.
   [[nodiscard]] Result<void> fill(std::span<DrawnEpisode> episodes, SceneWork& work,
                                   unsigned threads);
   [[nodiscard]] Result<Outcome> outcomeOf(std::vector<SceneResult> results) const;
@@ -73,9 +73,9 @@ class EpisodeDrawing {
   void goOnTo(State state);
   /// The state, after asking whether to stop.
   [[nodiscard]] State stateNow();
-  /// The same error; remembers where it says that something could not be kept.
+  /// Returns the error unchanged; moves to kFailed if it says that something could not be saved.
   [[nodiscard]] Error noted(Error error);
-  /// Tells the user, one call at a time.
+  /// Reports progress to the user, one call at a time.
   void count(std::size_t episodes);
 
   const EpisodeInputs& inputs_;

@@ -35,7 +35,7 @@ std::string whySkipped(const DrawnEpisode& episode, const GeneratedScene& scene,
       scene.floor_places);
 }
 
-/// Takes the scenes that turned out to be unusable out of `scenes`.
+/// Moves the scenes that turned out to be unusable from `scenes` to the list of those left out.
 void takeOut(std::vector<UnusableScene> unusable, std::vector<const SceneOfPack*>& scenes,
              std::vector<UnusableScene>& left_out) {
   for (UnusableScene& scene : unusable) {
@@ -44,7 +44,7 @@ void takeOut(std::vector<UnusableScene> unusable, std::vector<const SceneOfPack*
   }
 }
 
-/// The error for a set of scenes none of which can be used.
+/// The error for a set of scenes none of which is usable.
 Error noScene(const std::vector<UnusableScene>& left_out) {
   const UnusableScene& first = left_out.front();
   std::string others;
@@ -55,7 +55,7 @@ Error noScene(const std::vector<UnusableScene>& left_out) {
   return {ErrorCode::kInvalidInput, first.name, first.reason + others};
 }
 
-/// The scenes of the split. Fails when there are none.
+/// The scenes of the split. Fails if there are none.
 Result<std::vector<const SceneOfPack*>> scenesOf(const GenerationWorld& world,
                                                  const SceneSplit& split) {
   std::vector<const SceneOfPack*> scenes;
@@ -90,7 +90,7 @@ std::vector<DealtScene> dealEpisodes(std::span<const SceneOfPack* const> scenes,
   return deal;
 }
 
-/// Sees that no more episodes were skipped than may be.
+/// Fails if more episodes were skipped than is allowed.
 Result<void> checkSkipped(std::span<const DrawnScene> scenes,
                           const EpisodeGeneratorOptions& options) {
   std::size_t skipped = 0;
@@ -110,8 +110,8 @@ Result<void> checkSkipped(std::span<const DrawnScene> scenes,
                   whySkipped(*first, worst->summary, options)));
 }
 
-/// Takes out of `scenes` those that an interrupted generation has found to be unusable, so that no
-/// episodes are dealt to them.
+/// Removes from `scenes` those that an interrupted generation found unusable, so that no episodes
+/// are dealt to them.
 Result<void> takeOutKnown(const EpisodeInputs& inputs, const SceneJournal& journal,
                           std::vector<const SceneOfPack*>& scenes,
                           std::vector<UnusableScene>& left_out) {
@@ -134,8 +134,8 @@ Result<void> takeOutKnown(const EpisodeInputs& inputs, const SceneJournal& journ
   return {};
 }
 
-/// Deals the episodes to the scenes and draws them, until no scene is left that turns out to be
-/// unusable: how they are dealt depends on the usable ones only.
+/// Deals the episodes to the scenes and draws them, and starts over without the scenes that turn
+/// out to be unusable: the deal depends only on the usable ones.
 Result<std::vector<DrawnScene>> drawInUsable(const EpisodeInputs& inputs,
                                              const GenerationContext& context,
                                              const EpisodeProgress& progress,
@@ -156,7 +156,7 @@ Result<std::vector<DrawnScene>> drawInUsable(const EpisodeInputs& inputs,
   return tl::unexpected(noScene(left_out));
 }
 
-/// `drawn`: in the first of `scenes`.
+/// The first of `drawn` is in the first of `scenes`, and so on.
 GeneratedEpisodes gather(const GenerationWorld& world, std::span<const SceneOfPack* const> scenes,
                          std::span<const DrawnScene> drawn, std::uint32_t least_objects) {
   GeneratedEpisodes generated;
@@ -180,9 +180,10 @@ GeneratedEpisodes gather(const GenerationWorld& world, std::span<const SceneOfPa
   return generated;
 }
 
-/// Says which options would help where hardly a place is flat enough, or far enough from another.
+/// Warns, with the option that would help, if hardly any place is flat enough or far enough from
+/// another.
 void adviseOn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generated) {
-  // With so many times more places, surfaces are bumpy and not small.
+  // If there would be this many times as many places, the surfaces are bumpy rather than small.
   constexpr std::size_t kManyMore = 2;
   constexpr std::uint64_t kManyDrafts = 100;
   std::vector<std::string>& warnings = generated.episodes.warnings;
@@ -200,7 +201,7 @@ void adviseOn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generat
   }
   const std::uint64_t by_distance = generated.rejections[EpisodeRejection::kDistance];
   const bool is_most = by_distance > all / 3 * 2;
-  // Another warning says of such scenes that the distance is shorter there.
+  // For these scenes another warning says that the distance is shorter there.
   const bool are_shortened = std::ranges::all_of(
       generated.scenes, [](const GeneratedScene& one) { return one.shortened_way.has_value(); });
   if (!is_most || are_shortened || by_distance < kManyDrafts * options.episodes) return;
@@ -211,7 +212,7 @@ void adviseOn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generat
       std::isfinite(options.target_to_goal.most) ? "wider" : "shorter"));
 }
 
-/// Says what is not as it was asked for.
+/// Warns of everything that is not as requested.
 void warn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generated) {
   std::vector<std::string>& warnings = generated.episodes.warnings;
   for (const UnusableScene& scene : generated.left_out) {

@@ -14,7 +14,7 @@ auto refuse(std::string message) {
   return fail(ErrorCode::kInvalidInput, "episodes", std::move(message));
 }
 
-/// Infinity is allowed as the upper end.
+/// The upper end may be infinite.
 Result<void> checkDistances(const DistanceRange& range, std::string_view what) {
   if (std::isfinite(range.least) && range.least >= 0 && range.least <= range.most) return {};
   return refuse(

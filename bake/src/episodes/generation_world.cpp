@@ -73,7 +73,7 @@ std::uint64_t sourceBytes(const PackFile& pack) {
   return bytes;
 }
 
-/// The corners of everything that is drawn of one object, in its frame.
+/// The vertices of everything that is drawn of one object, in its frame.
 std::vector<Vec3> drawnPoints(const RenderMeshes& meshes, std::uint32_t model_number) {
   const RenderModel& model = meshes.models[model_number];
   std::vector<Vec3> points;
@@ -129,7 +129,7 @@ Result<void> GenerationWorld::add(const PackFile& pack) {
       return {};
     }
     case PackKind::kTexture:
-      // What scenes look like plays no part.
+      // The looks of scenes do not matter here.
       return {};
     case PackKind::kEpisodes:
     case PackKind::kPolicy:

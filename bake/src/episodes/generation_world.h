@@ -17,26 +17,28 @@ namespace galactic::bake {
 struct SceneOfPack {
   const PackFile* pack = nullptr;
   Scene scene;
-  /// Of the files that it was baked from.
+  /// Size of the files that it was baked from.
   std::uint64_t source_bytes = 0;
 };
 
-/// The packs of a generation, opened, by name: nothing depends on the order in which they came.
+/// The opened packs of a generation, sorted by name, so that nothing depends on the order in which
+/// they are given.
 class GenerationWorld {
  public:
-  /// Fails with kInvalidInput when the packs do not go together: not one robot, no scene, no
-  /// object, one name twice, other radii, a robot that cannot do the task, another kind of pack.
+  /// Fails with kInvalidInput if the packs do not fit together: no robot or several, no scene, no
+  /// object, a name that occurs twice, different radii, a robot that cannot do the task, or a pack
+  /// of another kind. Ignores packs of textures.
   [[nodiscard]] static Result<GenerationWorld> open(std::span<const PackFile* const> packs);
 
-  /// Ascending names.
+  /// By ascending name.
   [[nodiscard]] const std::vector<SceneOfPack>& scenes() const { return scenes_; }
   [[nodiscard]] const std::vector<ObjectModel>& objects() const { return objects_; }
   [[nodiscard]] const Robot& robot() const { return robot_.front(); }
 
-  /// The packs of all objects, and of the robot.
+  /// The packs of all objects and of the robot.
   [[nodiscard]] const std::vector<const PackFile*>& commonPacks() const { return common_packs_; }
 
-  /// The shape of each object: the hull of its render mesh, or its box where it has none.
+  /// The shape of each object: the hull of its render mesh, or its box if it has none.
   [[nodiscard]] Result<std::vector<SettlingBody>> settlingBodies() const;
 
  private:

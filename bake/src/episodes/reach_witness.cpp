@@ -7,16 +7,16 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::size_t kTries = 400;
-/// Half the range of heights of arm samples that are taken for one aim, meters.
+/// Half the range of heights from which arm samples are taken for one aim, meters.
 constexpr float kHeightRange = 0.015F;
-/// Floors within this of the given height count as it, meters: rugs and thresholds.
+/// Floors may differ from the given height by this much, meters: there are rugs and thresholds.
 constexpr float kFloorRange = 0.05F;
 
 float between(float low, float high, Random& random) {
   return low + static_cast<float>(random.unit()) * (high - low);
 }
 
-/// A point to bring the grasp point to: over or beside the box, seldom far inside.
+/// Draws a point for the grasp point to aim at: above or beside the box, seldom far inside.
 Vec3 drawAim(const Footprint& box, float margin, Random& random) {
   const float length = between(-box.half_length - margin, box.half_length + margin, random);
   const float width = between(-box.half_width - margin, box.half_width + margin, random);
@@ -26,7 +26,8 @@ Vec3 drawAim(const Footprint& box, float margin, Random& random) {
           box.z + box.along_z * length + box.along_x * width};
 }
 
-/// The place under the base that is on the floor wanted and can be left in this heading.
+/// The place under the base that is on the right floor and that the robot can leave in this
+/// heading.
 const FloorPlace* standingPlace(const FloorMap& map, const Vec3& ground, float yaw,
                                 std::uint32_t part) {
   const std::uint32_t heading = nearestHeading(yaw);

@@ -10,7 +10,7 @@ namespace galactic::bake {
 
 template <class Archive>
 void transferFields(Archive& archive, Is<GeneratedScene> auto& scene) {
-  // 0 where there is none.
+  // 0 if there is none.
   float shortened_way = scene.shortened_way.value_or(0);
   archive(scene.name, scene.floor_places, scene.floor_parts, scene.support_places, scene.surfaces,
           scene.bumpy_places, scene.receptacles, scene.has_mesh, shortened_way);
@@ -39,7 +39,7 @@ namespace {
 
 enum class RecordKind : std::uint8_t { kLook, kBatch };
 
-/// Whether an episode is one of the generation's: its journal could be anybody's.
+/// Whether a recorded episode fits the generation; the journal may come from anywhere.
 bool isSound(const DrawnEpisode& episode, std::size_t objects) {
   if (episode.is_skipped) return true;
   return episode.episode.placement_count == episode.placements.size() &&
@@ -54,7 +54,7 @@ SceneJournal::Key SceneJournal::keyOf(std::string_view scene, const SceneDetails
   const auto hash_of = [](const auto& list) {
     return detail::contentHash(std::as_bytes(std::span(list)));
   };
-  // Meshes are large, and not copied.
+  // Hashes the meshes separately, because they are too large to copy.
   return hash_of(bytesOf(scene, hash_of(details.mesh.vertices), hash_of(details.mesh.triangles),
                          details.receptacles));
 }

@@ -15,35 +15,35 @@
 
 namespace galactic::bake {
 
-/// What a look at a scene told.
+/// The result of a look at a scene.
 struct SceneLook {
-  /// Why there can be no episodes; empty where there can be.
+  /// Why there can be no episodes; empty if there can be some.
   std::string unusable;
-  /// Of a scene that is not unusable; without the number of episodes.
+  /// Only for usable scenes; without the number of episodes.
   GeneratedScene summary;
 };
 
-/// What a generation that was interrupted has done: looks at scenes, and batches of episodes.
+/// The progress of a generation that may be interrupted: looks at scenes, and batches of episodes.
 /// Thread-safe.
 class SceneJournal {
  public:
-  /// What decides what is found in a scene, besides the journal's subject.
+  /// Hash of everything that the results in a scene depend on, besides the journal's subject.
   using Key = detail::ContentHash;
   [[nodiscard]] static Key keyOf(std::string_view scene, const SceneDetails& details);
 
-  /// `journal`: null where nothing is kept; else it outlives this. `objects`: how many there are to
-  /// place.
+  /// `journal` is null if nothing is to be kept; otherwise it must outlive this. `objects` is the
+  /// number of objects that can be placed.
   SceneJournal(Journal* journal, std::size_t objects);
 
-  /// Whether some scene of that name was unusable.
+  /// Whether some scene with this name was unusable.
   [[nodiscard]] bool hasUnusable(std::string_view scene) const;
-  /// Null where nobody has looked.
+  /// Null if the scene has not been looked at.
   [[nodiscard]] const SceneLook* lookAt(const Key& key) const;
-  /// Whether these episodes, whose numbers and seeds are given, were drawn before; they are as they
-  /// were then.
+  /// If these episodes, whose numbers and seeds are set, were drawn before, fills them in and
+  /// returns true.
   [[nodiscard]] bool recall(const Key& key, std::span<DrawnEpisode> episodes) const;
 
-  /// Fail with kIo.
+  /// These fail with kIo.
   [[nodiscard]] Result<void> add(const Key& key, const SceneLook& look) const;
   [[nodiscard]] Result<void> add(const Key& key, std::span<const DrawnEpisode> episodes) const;
 
@@ -54,7 +54,7 @@ class SceneJournal {
   Journal* journal_;
   std::size_t objects_;
   std::map<Name, SceneLook> looks_;
-  /// By the number of their first, too.
+  /// The keys also contain the number of the first episode.
   std::map<std::pair<Name, std::size_t>, std::vector<DrawnEpisode>> batches_;
 };
 

@@ -28,16 +28,16 @@ struct OpenStart {
   /// Index into the set.
   std::uint32_t number = 0;
   Random random;
-  /// Its objects are those of the world.
+  /// Its objects are numbered as in the world.
   DrawnEpisode drawn{};
   bool is_done = false;
 };
 
-/// What became of the starts in a scene.
+/// The starts in one scene, and how drawing them went.
 struct SceneStarts {
   std::vector<OpenStart> starts{};
   RejectionCounts rejections{};
-  /// Why there is none at all; empty where there may be some.
+  /// Why there are none at all; empty if there may be some.
   std::string nowhere{};
 };
 
@@ -70,9 +70,9 @@ class StartDrawing {
   }
 
  private:
-  /// Draws until all stand in the runtime, too, or have no place.
+  /// Draws until all episodes start and stay still in the runtime, too, or have no place.
   Result<void> fillBatch(std::vector<OpenStart*> open, RejectionCounts& rejections) const {
-    // As many replays as the drafts of a generated episode.
+    // As many replays as a generated episode has drafts.
     constexpr int kReplays = 150;
     for (int n = 0; n < kReplays && !open.empty(); ++n) {
       std::erase_if(open, [&](OpenStart* one) { return !draw(*one, rejections); });
@@ -115,7 +115,7 @@ class StartDrawing {
   std::vector<const PackFile*> packs_;
 };
 
-/// The world's number of each of the set's objects.
+/// The number in the world of each object of the set.
 Result<std::vector<std::uint32_t>> objectNumbers(const GenerationWorld& world,
                                                  const SourceEpisodes& episodes) {
   std::vector<std::uint32_t> numbers;
@@ -144,8 +144,9 @@ Result<const SceneOfPack*> sceneNamed(const GenerationWorld& world, const std::s
                           name, name));
 }
 
-/// The episodes without a start by the set's number of their scene, as those of the world, each
-/// with a stream of random numbers of its own: it depends on the seed and its number in the set.
+/// The episodes without a start, by the number of their scene in the set. Their objects are
+/// numbered as in the world, and each has its own stream of random numbers, which depends on the
+/// seed and on the episode's number in the set.
 std::map<std::uint32_t, SceneStarts> openStarts(const SourceEpisodes& episodes,
                                                 std::span<const std::uint32_t> object_numbers,
                                                 std::uint64_t seed) {
@@ -169,7 +170,7 @@ std::map<std::uint32_t, SceneStarts> openStarts(const SourceEpisodes& episodes,
   return scenes;
 }
 
-/// Takes these episodes, ascending, out of the set, and their placements.
+/// Removes these episodes (ascending numbers) and their placements from the set.
 void takeOut(std::span<const std::uint32_t> numbers, SourceEpisodes& episodes) {
   std::vector<Episode> kept;
   std::vector<Placement> placements;
@@ -185,8 +186,8 @@ void takeOut(std::span<const std::uint32_t> numbers, SourceEpisodes& episodes) {
   episodes.placements = std::move(placements);
 }
 
-/// Gives the set the starts that were drawn. Episodes for which there is none are left out, which a
-/// warning says.
+/// Puts the starts that were drawn into the set. Removes episodes for which there is none, and adds
+/// a warning.
 Result<void> takeOver(const std::map<std::uint32_t, SceneStarts>& scenes, const Robot& robot,
                       SourceEpisodes& episodes) {
   std::vector<std::uint32_t> left_out;

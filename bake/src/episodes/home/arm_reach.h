@@ -8,32 +8,33 @@
 
 namespace galactic::bake {
 
-/// One sampled position of the arm, with the base at the origin, looking along +X.
+/// One sampled position of the arm, with the base at the origin and facing +X.
 struct ArmSample {
-  /// The grasp point, meters above the ground and away from the base's center.
+  /// The grasp point in meters, relative to the point on the ground under the base's center.
   Vec3 grasp_point;
   float distance = 0;
-  /// Row of positions.
+  /// Index of its row of joint positions.
   std::uint32_t row = 0;
 };
 
-/// What the robot reaches without driving, from forward kinematics of joint positions drawn evenly
-/// within the limits of the controlled joints; the other joints stay where an episode starts.
+/// The space that the robot reaches without driving, from forward kinematics of joint positions
+/// drawn uniformly within the limits of the controlled joints; the other joints stay where an
+/// episode starts.
 class ArmReach {
  public:
-  /// Draws from a stream of its own, so that the samples depend on the robot only. Samples in which
-  /// the robot touches itself (SelfCollision) are left out.
+  /// Draws from a random stream of its own, so that the samples depend only on the robot. Leaves
+  /// out samples in which the robot touches itself (SelfCollision).
   explicit ArmReach(const Robot& robot);
 
-  /// By rising height of the grasp point.
+  /// By ascending height of the grasp point.
   [[nodiscard]] std::span<const ArmSample> samples() const { return samples_; }
   /// The samples whose grasp point is between these heights above the ground, meters.
   [[nodiscard]] std::span<const ArmSample> between(float low, float high) const;
   /// The joint positions of a sample: one per position of the robot.
   [[nodiscard]] std::span<const float> positions(const ArmSample& sample) const;
 
-  /// Whether some sample's grasp point is about there: within the cell of a table of 5 cm by 5 cm.
-  /// Height above the ground and distance from the base's center, meters.
+  /// Whether any sample's grasp point is about there, that is, in the same cell of a table of 5 cm
+  /// by 5 cm. Height above the ground and distance from the base's center, meters.
   [[nodiscard]] bool covers(float distance, float height) const;
   /// The farthest distance of any sample, meters.
   [[nodiscard]] float farthest() const { return farthest_; }

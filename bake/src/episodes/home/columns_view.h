@@ -8,8 +8,8 @@
 
 namespace galactic::bake {
 
-/// The free spans of a column, ascending: a range that takes no memory where they are few, as they
-/// nearly always are.
+/// The free spans of a column, ascending: a range that allocates no memory if there are few, as is
+/// nearly always the case.
 class ColumnSpans {
  public:
   ColumnSpans(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k)
@@ -28,7 +28,7 @@ class ColumnSpans {
   std::size_t count_;
 };
 
-/// Where column (i, k) stands: x and z in meters, y 0.
+/// The center of column (i, k): x and z in meters, y 0.
 [[nodiscard]] inline Vec3 columnCenter(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k) {
   const ColumnGridLayout& layout = grid.layout();
   return {layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing, 0,

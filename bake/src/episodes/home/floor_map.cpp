@@ -14,41 +14,41 @@
 namespace galactic::bake {
 namespace {
 
-/// A step that the run's base takes in both directions, meters.
+/// The highest step that the run's base takes both up and down, meters.
 constexpr float kMostStep = std::min(GroundOptions{}.most_rise, GroundOptions{}.most_drop);
 
-/// The headings next to these ones.
+/// The headings adjacent to these.
 std::uint16_t besideHeadings(std::uint16_t headings) {
   static_assert(kHeadings == 16);
   return static_cast<std::uint16_t>(std::rotl(headings, 1) | std::rotr(headings, 1));
 }
 
-/// Where a flood fill has been.
+/// The headings that a flood fill has reached.
 struct Flood {
   explicit Flood(std::size_t places) : seen(places, 0), fresh(places, 0) {}
 
-  /// Remembers headings of a place that have not been seen.
+  /// Marks headings of a place that have not been seen before.
   void visit(std::uint32_t place, std::uint16_t headings) {
     seen[place] = static_cast<std::uint16_t>(seen[place] | headings);
     if (fresh[place] == 0) open.push_back(place);
     fresh[place] = static_cast<std::uint16_t>(fresh[place] | headings);
   }
 
-  /// By place: the headings seen, and those of them from which the fill has not gone on yet.
+  /// For each place: the headings seen, and those of them from which the fill has yet to continue.
   std::vector<std::uint16_t> seen;
   std::vector<std::uint16_t> fresh;
   /// Places with fresh headings.
   std::vector<std::uint32_t> open;
 };
 
-/// Connections of floor places.
+/// The connections between floor places.
 class FloorGraph {
  public:
   FloorGraph(const std::vector<FloorPlace>& places, const std::vector<std::uint32_t>& first,
              const ColumnGrid& grid)
       : places_(places), first_(first), grid_(grid) {}
 
-  /// Fills from one heading of a place; returns how many headings of all places it reached.
+  /// Fills from one heading of a place; returns the number of headings reached, over all places.
   std::size_t fill(Flood& flood, std::uint32_t place, std::uint32_t heading) const {
     std::size_t reached = 0;
     flood.visit(place, static_cast<std::uint16_t>(1U << heading));
@@ -68,13 +68,13 @@ class FloorGraph {
   }
 
  private:
-  /// A robot that comes from a neighboring place.
+  /// The robot as it comes from a neighboring place.
   struct Arrival {
     float height = 0;
     std::uint16_t headings = 0;
   };
 
-  /// Takes the fresh headings of a place, and all to which the robot can turn from them there.
+  /// Takes the fresh headings of a place, and adds all to which the robot can turn from them there.
   std::uint16_t turnAt(Flood& flood, std::uint32_t place) const {
     std::uint16_t headings = std::exchange(flood.fresh[place], std::uint16_t{0});
     while (const std::uint16_t turned = unseen(flood, place, besideHeadings(headings))) {
@@ -93,7 +93,7 @@ class FloorGraph {
     }
   }
 
-  /// Those of the headings in which the robot is free and has not been seen.
+  /// Those of the headings that are free and have not been seen.
   [[nodiscard]] std::uint16_t unseen(const Flood& flood, std::uint32_t place,
                                      std::uint16_t headings) const {
     return static_cast<std::uint16_t>(headings & places_[place].headings & ~flood.seen[place]);
@@ -104,16 +104,16 @@ class FloorGraph {
   const ColumnGrid& grid_;
 };
 
-/// Places between which the robot can drive, by one of them.
+/// Places between which the robot can drive, represented by one of them.
 struct FloorPart {
   std::uint32_t place = 0;
   std::uint32_t heading = 0;
-  /// Headings of all places.
+  /// Number of headings of all its places.
   std::size_t size = 0;
 };
 
-/// The largest part, and those that are not much smaller: storeys, but no closets. The largest one
-/// first.
+/// The largest part, and those that are not much smaller, the largest first: storeys, but not
+/// closets.
 std::vector<FloorPart> largeParts(const FloorGraph& graph, const std::vector<FloorPlace>& places) {
   constexpr std::size_t kTimesSmaller = 5;
   std::vector<FloorPart> parts;
@@ -132,10 +132,11 @@ std::vector<FloorPart> largeParts(const FloorGraph& graph, const std::vector<Flo
   return parts;
 }
 
-/// The spheres of a body as the batched queries of grids want them, to be tested in many places.
+/// The spheres of a body in the form that the batched queries of grids need, to be tested in many
+/// places.
 class BodyArrays {
  public:
-  /// `spheres` are ordered by radius; at least one.
+  /// `spheres` must be ordered by radius, and not be empty.
   explicit BodyArrays(std::span<const BodySphere> spheres) : moved_(spheres.size()) {
     centers_.reserve(spheres.size());
     for (const BodySphere& sphere : spheres) {
@@ -148,8 +149,8 @@ class BodyArrays {
     blocked_.radius_index = parts_.front().radius_index;
   }
 
-  /// The answer of isFree() for these spheres, moved by `offset`, found faster. Soonest where the
-  /// sphere that was blocked last is blocked again, as it mostly is near the place before.
+  /// Returns the same as isFree() for these spheres, moved by `offset`, but faster. Begins with the
+  /// sphere that was blocked last, which is mostly blocked again at a nearby place.
   [[nodiscard]] bool isFreeAt(const Scene& scene, const Vec3& offset) {
     const ColumnGrid& grid = scene.grids()[blocked_.radius_index];
     if (grid.clearance(centers_[blocked_.sphere] + offset) != Clearance::kFree) return false;
@@ -175,7 +176,7 @@ class BodyArrays {
   }
 
  private:
-  /// Spheres of one radius, one after the other.
+  /// Consecutive spheres of one radius.
   struct Part {
     std::uint32_t radius_index = 0;
     std::size_t count = 0;
@@ -242,14 +243,14 @@ void FloorMap::addPlaces(std::uint32_t i, std::uint32_t k) {
     Vec3 center = columnCenter(grid_, i, k);
     center.y = span.lo;
     const std::optional<float> floor = floorUnder(center);
-    // Two spans of the large sphere may lie in one of the small one, over one floor.
+    // Two spans of the large sphere may lie in one span of the small sphere, above the same floor.
     if (!floor || floor == last) continue;
     places_.push_back({.i = i, .k = k, .height = *floor, .headings = 0, .part = 0});
     last = floor;
   }
 }
 
-/// As the smallest radius sees it: a small sphere is not held up by what stands beside it.
+/// Uses the smallest radius, since objects beside a small sphere do not hold it up.
 std::optional<float> FloorMap::floorUnder(const Vec3& free_center) const {
   const Contact contact = fine_grid_.contact(free_center);
   if (contact.clearance != Clearance::kFree) return std::nullopt;

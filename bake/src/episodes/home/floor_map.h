@@ -12,8 +12,8 @@
 
 namespace galactic::bake {
 
-/// Headings in which the base is tried at each place, evenly spread; heading n is a yaw of
-/// n * 2 pi / kHeadings.
+/// Number of headings in which the base is tried at each place, evenly spaced; heading n is a yaw
+/// of n * 2 pi / kHeadings.
 inline constexpr std::uint32_t kHeadings = 16;
 
 /// A place on the floor under the center of a column of the largest radius.
@@ -22,7 +22,7 @@ struct FloorPlace {
   std::uint32_t k = 0;
   /// Meters.
   float height = 0;
-  /// Bit n: the robot in its start pose is free in heading n, and can drive here from anywhere else
+  /// Bit n: in heading n the robot is free in its start pose, and can drive here from anywhere else
   /// in the same part of the map.
   std::uint16_t headings = 0;
   /// Number of the part; 0 is the largest.
@@ -30,21 +30,21 @@ struct FloorPlace {
 };
 
 /// Where the robot can stand and drive: the large connected parts of the floor, such as storeys.
-/// The robot cannot drive from one to another.
+/// The robot cannot drive from one part to another.
 class FloorMap {
  public:
   /// Takes the floor from the columns of the largest radius and tests all spheres of the robot in
-  /// its start pose against the scene. Places in neighboring columns are connected in one heading
-  /// when their heights differ by no more than the run's GroundOptions allow; headings are
-  /// connected with their neighbors. Empty when the robot stands nowhere.
+  /// its start pose against the scene. In each heading, places in neighboring columns are connected
+  /// if their heights differ by no more than the run's GroundOptions allow; at each place, adjacent
+  /// headings are connected. Empty if the robot can stand nowhere.
   FloorMap(const Scene& scene, const Robot& robot);
 
-  /// Row by row, the lower place of a column first; each with at least one heading. A place that
-  /// headings of several parts share is one of each.
+  /// Row by row, the lower place of a column first; each has at least one heading. A place whose
+  /// headings belong to several parts occurs once for each part.
   [[nodiscard]] const std::vector<FloorPlace>& places() const { return places_; }
-  /// Places with a floor at which the robot was tried.
+  /// Number of places with a floor at which the robot was tried.
   [[nodiscard]] std::size_t tried() const { return tried_; }
-  /// Parts that the robot can drive in.
+  /// Number of parts that the robot can drive in.
   [[nodiscard]] std::size_t parts() const { return parts_; }
 
   /// Point on the floor at the center of the place's column, meters.
@@ -52,11 +52,12 @@ class FloorMap {
   /// Edge of a column's cell, meters.
   [[nodiscard]] float spacing() const { return grid_.spacing(); }
 
-  /// The height of the floor under (x, z) itself, meters: what the column of the smallest radius
-  /// there shows within a step of `height`, the nearest one. None where there is no such floor.
+  /// The height of the floor directly under (x, z), meters: of the floors in the column of the
+  /// smallest radius there that are within a step of `height`, the nearest. None if there is no
+  /// such floor.
   [[nodiscard]] std::optional<float> heightAt(float x, float z, float height) const;
 
-  /// The places of the column in which (x, z) lies; empty outside the grid.
+  /// The places of the column that contains (x, z); empty outside the grid.
   [[nodiscard]] std::span<const FloorPlace> placesAt(float x, float z) const;
 
  private:
@@ -66,10 +67,10 @@ class FloorMap {
   void keepLargeParts();
 
   ColumnGrid grid_;
-  /// Of the smallest radius.
+  /// The grid of the smallest radius.
   ColumnGrid fine_grid_;
   std::vector<FloorPlace> places_;
-  /// Index of each column's first place, and the number of places at the end.
+  /// Index of each column's first place, then the number of places.
   std::vector<std::uint32_t> first_;
   std::size_t tried_ = 0;
   std::size_t parts_ = 0;

@@ -58,7 +58,7 @@ PlacedObject placeObject(const ObjectModel& model, std::uint32_t object, const S
 }
 
 float gapBetween(const Footprint& a, const Footprint& b) {
-  // Along each side of both rectangles: none of these gaps is more than the distance.
+  // Gaps along each side of both rectangles, and of the heights; none exceeds the distance.
   const std::array<float, 5> gaps{
       gapAlong(a, b, a.along_x, a.along_z), gapAlong(a, b, -a.along_z, a.along_x),
       gapAlong(a, b, b.along_x, b.along_z), gapAlong(a, b, -b.along_z, b.along_x),

@@ -8,8 +8,8 @@
 
 namespace galactic::bake {
 
-/// The outline of an object's box seen from above, and its heights: a rectangle that contains the
-/// box's corners. Meters.
+/// The outline of an object's box from above, and its heights: a rectangle that contains the
+/// corners of the box. Meters.
 struct Footprint {
   float x = 0;
   float z = 0;
@@ -31,15 +31,16 @@ struct PlacedObject {
   Footprint footprint;
 };
 
-/// The size of a model in one of its stable poses, before it is turned: the corners of its box in
-/// the plane's frame, relative to the object's origin over the plane. Meters.
+/// The size of a model in one of its stable poses before the yaw: the corners of its box in the
+/// plane's frame, relative to the object's origin above the plane. Meters.
 struct StandingSize {
   Vec3 min;
   Vec3 max;
 };
 [[nodiscard]] StandingSize standingSize(const ObjectModel& model, const StablePose& pose);
 
-/// Where an object is put: its origin over (x, z), on a surface of this height, turned by a yaw.
+/// Where to put an object: with its origin above (x, z), on a surface of this height, turned by a
+/// yaw.
 struct Spot {
   float x = 0;
   float z = 0;
@@ -49,14 +50,14 @@ struct Spot {
 [[nodiscard]] PlacedObject placeObject(const ObjectModel& model, std::uint32_t object,
                                        const StablePose& stable, const Spot& spot);
 
-/// A lower bound of the distance of two placed boxes, meters: that of their footprints, or of their
-/// heights where this is more; 0 or less where both overlap.
+/// A lower bound of the distance between two placed boxes, meters: that of their footprints, or of
+/// their heights if this is more; 0 or less if both overlap.
 [[nodiscard]] float gapBetween(const Footprint& a, const Footprint& b);
 
-/// Distance of a point and an object's box, meters; 0 inside.
+/// Distance between a point and an object's box, meters; 0 inside.
 [[nodiscard]] float distanceToBox(const PlacedObject& object, const Vec3& point);
 
-/// Whether any sphere is nearer to the object's box than its radius.
+/// Whether any sphere is closer to the object's box than its radius.
 [[nodiscard]] bool touches(const PlacedObject& object, std::span<const BodySphere> spheres);
 
 }  // namespace galactic::bake

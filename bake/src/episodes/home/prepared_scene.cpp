@@ -15,7 +15,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Grids may reach this far beyond the triangles that they were made of, meters.
+/// How far grids may reach beyond the triangles that they were made of, meters.
 constexpr float kGridMargin = 1;
 
 /// The rectangle of a grid; heights are 0.
@@ -26,16 +26,16 @@ Bounds groundOf(const ColumnGrid& grid) {
   return {{layout.min_x, 0, layout.min_z}, {layout.min_x + length, 0, layout.min_z + width}};
 }
 
-/// Whether the mesh is about where the grid is: another up axis or unit is not.
+/// Whether the mesh is about where the grid is. It is not if its up axis or unit differs.
 bool covers(const Bounds& mesh, const Bounds& grid) {
   return mesh.min.x <= grid.min.x + kGridMargin && mesh.min.z <= grid.min.z + kGridMargin &&
          mesh.max.x >= grid.max.x - kGridMargin && mesh.max.z >= grid.max.z - kGridMargin;
 }
 
-/// What to do where no goal was found.
+/// Advice for a scene where no goal was found.
 std::string adviceFor(const PairSearch& search, float flatness) {
   const RejectionCounts& rejections = search.rejections;
-  // On scans nearly every try fails where surfaces have to be flatter.
+  // On scans nearly every try fails if surfaces have to be flatter than scans are.
   constexpr double kNearlyAll = 0.98;
   const std::uint64_t bumpy =
       rejections[EpisodeRejection::kNoRoom] + rejections[EpisodeRejection::kUneven];
@@ -101,7 +101,7 @@ std::string PreparedScene::whyUnusable() const {
 }
 
 float PreparedScene::widestWay() const {
-  // The extents in so many directions of the ground tell the longest way within a hundredth.
+  // The extents in this many directions give the greatest distance to within a hundredth.
   constexpr int kDirections = 16;
   constexpr float kHundredth = 1.01F;
   const auto extent = [this](const Vec3& direction) {
@@ -119,13 +119,13 @@ float PreparedScene::widestWay() const {
     const float angle = std::numbers::pi_v<float> * static_cast<float>(n) / kDirections;
     across = std::max(across, extent({std::cos(angle), 0, std::sin(angle)}));
   }
-  // Origins of objects may be off their places, and settle aside.
+  // Origins of objects may be off the centers of their places, and settling moves objects.
   const float off = 2 * (scene_.grids().front().spacing() + kSettlingWay);
   return std::hypot(across * kHundredth, extent({0, 1, 0})) + off;
 }
 
 void PreparedScene::chooseWay() {
-  // Where only the farthest corners are that far apart, hardly an episode finds two of them.
+  // If only the farthest corners are that far apart, hardly any draw finds two of them.
   constexpr float kAmple = 0.75F;
   if (!context_.options.shorten_way || supports_.places().empty()) return;
   const float widest = widestWay();
@@ -133,7 +133,7 @@ void PreparedScene::chooseWay() {
 }
 
 void PreparedScene::survey() {
-  // Goals nearer than that to their targets are hardly a task.
+  // Goals closer to their targets than this are hardly a task.
   constexpr float kLeastWay = 0.2F;
   PairSearch search = findProvenPairs(draftHome());
   while (search.pairs.empty() && context_.options.shorten_way &&
@@ -166,7 +166,7 @@ Result<void> PreparedScene::useMesh() {
   ASSIGN_OR_RETURN(auto rays, SurfaceRays::build(details_.mesh));
   rays_ = std::make_unique<const SurfaceRays>(std::move(rays));
   settling_ = std::make_unique<const SettlingScene>(details_.mesh);
-  // Both have copies.
+  // Both have copies of it.
   details_.mesh = {};
   return {};
 }
@@ -186,7 +186,7 @@ DraftHome PreparedScene::draftHome() const {
 }
 
 std::size_t PreparedScene::bumpyPlaces() const {
-  // Some square meters: where there are more, there is room for objects.
+  // A few square meters: with more places than this there is room for objects.
   constexpr std::size_t kMany = 2000;
   if (context_.options.flatness >= kScanFlatness || supports_.places().size() > kMany) return 0;
   EpisodeGeneratorOptions options = context_.options;

@@ -9,31 +9,31 @@
 
 namespace galactic::bake {
 
-/// What all scenes share.
+/// The parts of a generation that all scenes share.
 struct GenerationContext {
   const GenerationWorld& world;
   const ArmReach& reach;
-  /// One per object, where objects are settled.
+  /// One per object if objects are settled; else empty.
   std::span<const SettlingBody> bodies;
   const EpisodeGeneratorOptions& options;
 };
 
-/// What is worked out once for a scene before its episodes are drawn: most of the memory of a
-/// generation. Stays where it is: its parts know each other.
+/// Everything that is computed once for a scene before its episodes are drawn; takes most of the
+/// memory of a generation. Must not move, because its parts refer to each other.
 class PreparedScene {
  public:
-  /// Fails with kInvalidInput when the mesh is of another place.
+  /// Fails with kInvalidInput if the mesh does not cover the scene.
   [[nodiscard]] static Result<std::unique_ptr<const PreparedScene>> prepare(
       const GenerationContext& context, const Scene& scene, SceneDetails details);
 
-  /// Why there can be no episodes: the robot stands nowhere, the receptacles that were asked for
-  /// are missing, no surface is within reach, or no places were found that hold a target and, at
-  /// the distance that is asked for, its goal. Empty when there can be.
+  /// Why there can be no episodes: the robot can stand nowhere, the requested receptacles are
+  /// missing, no surface is within reach, or no places were found that hold a target and, at the
+  /// requested distance, its goal. Empty if there can be episodes.
   [[nodiscard]] const std::string& unusable() const { return unusable_; }
 
-  /// What drafts read; valid as long as this. Only of a scene that is not unusable.
+  /// The data for drafts; valid as long as this. Only for usable scenes.
   [[nodiscard]] DraftHome draftHome() const;
-  /// Places at which a target and its goal were seen to stand; some, unless it is unusable.
+  /// Pairs of places where a target and its goal were found to stand; not empty for usable scenes.
   [[nodiscard]] const std::vector<ProvenPair>& provenPairs() const { return proven_; }
 
   /// Without the number of episodes.
@@ -45,11 +45,11 @@ class PreparedScene {
   /// GeneratedScene::bumpy_places.
   [[nodiscard]] std::size_t bumpyPlaces() const;
   Result<void> useMesh();
-  /// How far apart two objects can be, meters: a little more than is possible, never less.
+  /// An upper bound of how far apart two objects can be, meters, and not much more than that.
   [[nodiscard]] float widestWay() const;
   void chooseWay();
-  /// Finds proven pairs, nearer ones where none are as far apart as is asked for and that is
-  /// allowed; without any it is unusable.
+  /// Finds proven pairs. If there are none at the requested distance, tries shorter ones if that is
+  /// allowed; without any the scene is unusable.
   void survey();
 
   const GenerationContext& context_;

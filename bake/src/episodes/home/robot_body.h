@@ -16,9 +16,9 @@ struct BodySphere {
   std::uint32_t radius_index = 0;
 };
 
-/// The robot in one configuration.
+/// The spheres and the grasp point of the robot in one configuration.
 struct RobotBody {
-  /// By falling radius: the large ones are the likeliest to be blocked.
+  /// By descending radius, since large spheres are the likeliest to be blocked.
   std::vector<BodySphere> spheres;
   /// Of the end effector.
   Vec3 grasp_point;
@@ -30,12 +30,13 @@ struct RobotBody {
 }
 
 /// Spheres and grasp point with the base at `world_from_ground` and the joints at `positions`
-/// (radians or meters, one per position of the robot). The robot must have base and end effector.
+/// (radians or meters, one per position of the robot). The robot must have a base and an end
+/// effector.
 [[nodiscard]] RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
                                   std::span<const float> positions);
 
 /// Whether every sphere, moved by `offset` (meters), is free in the column grid of its radius; the
-/// scene's radii must be the robot's. Spheres outside the grid are not free.
+/// scene must have the robot's radii. Spheres outside the grid are not free.
 [[nodiscard]] bool isFree(const Scene& scene, std::span<const BodySphere> spheres,
                           const Vec3& offset = {});
 

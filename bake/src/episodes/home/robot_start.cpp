@@ -12,14 +12,14 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::size_t kStartTries = 300;
-/// Of places for which only a distance is calculated.
+/// Limit for all draws, including those that only the distance rules out.
 constexpr std::size_t kDistanceTries = 10000;
 
-/// Somewhere in a cell: a share of its size between -1/2 and 1/2.
+/// A random offset within a cell, as a share of its size between -1/2 and 1/2.
 float aside(Random& random) { return static_cast<float>(random.unit()) - 0.5F; }
 
-/// Whether the base, which stands about at `floor`, and the start pose are clear of everything;
-/// corrects the base's height.
+/// Whether the robot in its start pose, with the base on the floor at about height `floor`, is
+/// clear of everything; corrects the base's height.
 bool standsFree(const StartHome& home, float floor, std::span<const PlacedObject> objects,
                 RobotStart& start) {
   Vec3& base = start.base_position;

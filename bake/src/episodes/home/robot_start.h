@@ -21,31 +21,30 @@ struct RobotStart {
   float base_yaw = 0;
 };
 
-/// What starts are drawn in. The references outlive it.
+/// The home in which starts are drawn. The references must outlive this.
 struct StartHome {
   const Scene& scene;
   const Robot& robot;
   const FloorMap& floor;
 };
 
-/// What a start is drawn for.
+/// The requirements for a start.
 struct StartWish {
-  /// FloorPlace::part in which it has to be.
+  /// FloorPlace::part where it must be.
   std::uint32_t part = 0;
-  /// The target's origin, and how far from it the base may be on the ground.
+  /// The target's origin, and the permitted distance from it to the base on the ground.
   Vec3 target;
   DistanceRange start_to_target{};
-  /// What the robot must not touch.
+  /// Objects that the robot must not touch.
   std::span<const PlacedObject> objects;
 };
 
-/// Draws a place on the floor where neither the robot nor its start pose touches anything. None
-/// where the tries were in vain. Adds up in `rejections` what was drawn and not taken. The result
-/// depends on the arguments only.
+/// Draws a place on the floor where the robot in its start pose touches nothing. None if all tries
+/// fail. Counts draws that were rejected in `rejections`. The result depends only on the arguments.
 [[nodiscard]] std::optional<RobotStart> drawStart(const StartHome& home, const StartWish& wish,
                                                   Random& random, RejectionCounts& rejections);
 
-/// Why there is no start at all, in one sentence: for a floor map without places.
+/// Why there is no start at all, in one sentence; for a floor map without places.
 [[nodiscard]] std::string whyNowhere(const FloorMap& floor, const Robot& robot);
 
 }  // namespace galactic::bake

@@ -10,12 +10,12 @@
 namespace galactic::bake {
 namespace {
 
-/// How far apart the floor places are looked at when a surface is tested for reach, meters: less
-/// than what the arm reaches without the base being anywhere special.
+/// Spacing of the floor places that are looked at when a surface is tested for reach, meters: small
+/// enough that the arm does not depend on the base being at a particular place.
 constexpr float kFloorStride = 0.09F;
 
-/// The free height over a surface of about this height in a column of the smallest radius: from the
-/// surface to what is over it. None where there is no such surface.
+/// The free height above a surface of about this height in a column of the smallest radius: from
+/// the surface to whatever is above it. None if there is no such surface.
 std::optional<Span> freeOver(const ColumnGrid& grid, const ColumnIndex& column, float surface,
                              float flatness) {
   for (const Span& span : ColumnSpans(grid, column.i, column.k)) {
@@ -25,9 +25,9 @@ std::optional<Span> freeOver(const ColumnGrid& grid, const ColumnIndex& column, 
   return std::nullopt;
 }
 
-/// How far around a footprint the columns have to be flat, meters, so that nothing under it is not:
-/// a column beside an edge still looks flat where the sphere on it sinks by no more than
-/// `flatness`, and the next one is a cell further.
+/// How far around a footprint the columns must be flat, meters, so that everything under the
+/// footprint is. A column beside an edge still looks flat as long as the sphere on it sinks by no
+/// more than `flatness`; the next column is a cell further.
 float rimOf(const ColumnGrid& grid, float flatness) {
   return grid.spacing() + std::sqrt(2 * grid.radius() * flatness);
 }
@@ -35,7 +35,7 @@ float rimOf(const ColumnGrid& grid, float flatness) {
 /// Finds floors from which the arm reaches a point.
 class ReachTest {
  public:
-  /// `heights` are those that the point may have over the floor.
+  /// `heights` is the permitted range of the point's height above the floor.
   ReachTest(const Scene& scene, const Reachable& from, const DistanceRange& heights)
       : floor_(from.floor), reach_(from.reach), heights_(heights) {
     listWays(scene.grids().back().spacing());
@@ -44,8 +44,8 @@ class ReachTest {
     std::sort(floor_heights_.begin(), floor_heights_.end());
   }
 
-  /// A floor from which the arm reaches `point`, and over which `point` is between the heights; the
-  /// first one in a fixed order. Null where there is none.
+  /// A floor from which the arm reaches `point`, and above which `point` is at a permitted height;
+  /// the first one in a fixed order. Null if there is none.
   [[nodiscard]] const FloorPlace* floorFor(const Vec3& point) const {
     if (!isOverAnyFloor(point)) return nullptr;
     for (const Way& way : ways_) {
@@ -59,7 +59,7 @@ class ReachTest {
   }
 
  private:
-  /// From the point to where the base may stand, meters.
+  /// Offset from the point to where the base may stand, meters.
   struct Way {
     float dx = 0;
     float dz = 0;
@@ -79,8 +79,8 @@ class ReachTest {
     }
   }
 
-  /// Whether any floor, however far away, is as far below as the heights ask for: hardly any point
-  /// of the floors themselves is, and they are most of all points.
+  /// Whether any floor, however far away, is as far below as `heights` requires. This excludes
+  /// nearly all points of the floors themselves, which are the majority.
   [[nodiscard]] bool isOverAnyFloor(const Vec3& point) const {
     const auto lowest =
         std::partition_point(floor_heights_.begin(), floor_heights_.end(),
@@ -93,11 +93,11 @@ class ReachTest {
   DistanceRange heights_;
   /// In the order in which they are tried.
   std::vector<Way> ways_;
-  /// Of all places of the floor, ascending, meters.
+  /// Heights of all places of the floor map, ascending, meters.
   std::vector<float> floor_heights_;
 };
 
-/// The heights of the surfaces in a row of columns and in the rows beside it, meters.
+/// The heights of the surfaces in a row of columns and in the adjacent rows, meters.
 class SurfaceRows {
  public:
   explicit SurfaceRows(const ColumnGrid& grid) : grid_(grid) {
@@ -105,19 +105,19 @@ class SurfaceRows {
     if (grid.columnsZ() > 0) read(0);
   }
 
-  /// Makes row k the middle one; one after the other, from 0.
+  /// Makes row k the middle one; must be called with consecutive rows, from 0.
   void moveTo(std::uint32_t k) {
     middle_ = k;
     if (k + 1 < grid_.columnsZ()) read(k + 1);
   }
 
-  /// Of column i of the row in the middle.
+  /// Heights in column i of the middle row.
   [[nodiscard]] std::span<const float> heights(std::uint32_t i) const {
     return rowOf(middle_).heightsOf(i);
   }
 
-  /// Whether column i of the row in the middle has eight neighbors, and these and itself have a
-  /// surface of about this height.
+  /// Whether column i of the middle row has eight neighbors, and it and all of them have a surface
+  /// of about this height.
   [[nodiscard]] bool isFlatAround(std::uint32_t i, float surface, float flatness) const {
     if (i == 0 || middle_ == 0) return false;
     if (i + 1 >= grid_.columnsX() || middle_ + 1 >= grid_.columnsZ()) return false;
@@ -132,7 +132,7 @@ class SurfaceRows {
 
  private:
   struct Row {
-    /// Index of the first height of each column, and the number of heights at the end.
+    /// Index of the first height of each column, then the number of heights.
     std::vector<std::size_t> first;
     std::vector<float> heights;
 
@@ -160,8 +160,9 @@ class SurfaceRows {
   std::uint32_t middle_ = 0;
 };
 
-/// Which flat places are one surface: neighbors in a row or a column of the grid that are about
-/// equally high, joined as the places are found, row by row.
+/// Numbers the surfaces that flat places belong to. Neighbors in a row or a column of the grid are
+/// on the same surface if their heights are about equal. Joins them as the places are found, row by
+/// row.
 class SurfaceLabels {
  public:
   SurfaceLabels(std::uint32_t columns, float flatness)
@@ -169,7 +170,7 @@ class SurfaceLabels {
 
   void beginColumn(std::uint32_t i, std::size_t count) { row_[i] = count; }
 
-  /// The last of `places` is a new one in column `i`.
+  /// Adds the last of `places`, which is in column `i`.
   void add(std::uint32_t i, const std::vector<SupportPlace>& places) {
     const auto index = static_cast<std::uint32_t>(places.size() - 1);
     parents_.push_back(index);
@@ -189,7 +190,8 @@ class SurfaceLabels {
   }
 
  private:
-  /// Joins the newest place with those of its height among `first` to `last`.
+  /// Joins the newest place with those of about its height among the places from `first` to before
+  /// `last`.
   void joinAny(const std::vector<SupportPlace>& places, std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       if (std::abs(places[n].surface - places.back().surface) > flatness_) continue;
@@ -199,7 +201,7 @@ class SurfaceLabels {
     }
   }
 
-  /// The label, for which later searches need fewer steps.
+  /// The label of a place; shortens the path to it for later searches.
   std::uint32_t shortened(std::uint32_t place) {
     const std::uint32_t label = labelOf(place);
     while (parents_[place] != label) place = std::exchange(parents_[place], label);
@@ -208,21 +210,21 @@ class SurfaceLabels {
 
   float flatness_;
   std::vector<std::uint32_t> parents_;
-  /// Index of the first place of each column, and the number of places at the end.
+  /// Index of the first place of each column, then the number of places.
   std::vector<std::size_t> above_;
   std::vector<std::size_t> row_;
   bool has_above_ = false;
 };
 
-/// How far below the surface and above it a receptacle's box may be, meters: datasets draw them by
-/// hand, and a run drops objects from inside them.
+/// How far a surface may be below a receptacle's box, and above it, meters: boxes in datasets are
+/// drawn by hand, and a run drops objects from inside them.
 constexpr float kUnderRegion = 0.05F;
 constexpr float kOverRegion = 0.02F;
 
 }  // namespace
 
 bool contains(const SupportRegion& region, const Vec3& point) {
-  // Most points are far off: nothing of the box is further from its center than its corners.
+  // Most points are far off, and no point of the box is further from its center than its corners.
   const Vec3 aside = point - region.world_from_region.translation;
   constexpr float kRounding = 1e-3F;
   const float reach = std::sqrt(dot(region.half_extents, region.half_extents)) + kRounding;
@@ -230,7 +232,7 @@ bool contains(const SupportRegion& region, const Vec3& point) {
   const Pose region_from_world = inverse(region.world_from_region);
   const Vec3 from = region_from_world * Vec3{point.x, point.y - kOverRegion, point.z};
   const Vec3 way = rotate(region_from_world.rotation, {0, kOverRegion + kUnderRegion, 0});
-  // The part of the segment, as shares of its length, that lies between each pair of faces.
+  // The part of the segment between each pair of faces, as shares of its length.
   float first = 0;
   float last = 1;
   const auto clip = [&](float at, float along, float half) {
@@ -271,7 +273,7 @@ SupportPlaces::SupportPlaces(const Scene& scene, const Reachable& from,
   }
 }
 
-/// Before anything is left out, so that a table whose middle no arm reaches is still one surface.
+/// Includes places out of reach, so that a table whose middle no arm reaches is still one surface.
 std::vector<SupportPlace> SupportPlaces::flatPlaces() const {
   const ColumnGrid& grid = scene_->grids().front();
   std::vector<SupportPlace> flat;
@@ -338,7 +340,7 @@ std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, flo
       if (std::abs(dx * footprint.along_x + dz * footprint.along_z) > length) continue;
       if (std::abs(dz * footprint.along_x - dx * footprint.along_z) > width) continue;
       const std::optional<Span> free = freeOver(grid, {i, k}, surface, flatness_);
-      // The object may be lifted by the unevenness of the surface.
+      // The unevenness of the surface may lift the object.
       if (!free || free->hi < footprint.heights.hi + flatness_ + kHeadroom) return std::nullopt;
       highest = std::max(highest, free->lo);
     }

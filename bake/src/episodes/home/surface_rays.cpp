@@ -7,7 +7,8 @@
 namespace galactic::bake {
 namespace {
 
-/// Rays begin this high over the surface, meters: under what may hang over an object.
+/// Height above the surface at which rays begin, meters: below anything that may hang above an
+/// object.
 constexpr float kAbove = 0.025F;
 
 }  // namespace

@@ -8,16 +8,17 @@
 
 namespace galactic::bake {
 
-/// How far apart rays meet the surface under an object at most, meters: finer than the columns.
+/// The greatest distance between the rays that test the surface under an object, meters: finer than
+/// the columns.
 inline constexpr float kRayDistance = 0.01F;
 
-/// The triangles of a scene, asked from above.
+/// Casts rays down onto the triangles of a scene.
 class SurfaceRays {
  public:
-  /// Copies what it needs. Fails with kUnsupported when memory is lacking.
+  /// Copies what it needs. Fails with kUnsupported if memory runs out.
   [[nodiscard]] static Result<SurfaceRays> build(const TriangleMesh& mesh);
 
-  /// Whether rays down over the whole footprint, its border included, all meet a surface within
+  /// Whether rays down over the whole footprint, including its border, all meet a surface within
   /// `flatness` (meters) of the height `surface`. Thread-safe.
   [[nodiscard]] bool isEven(const Footprint& footprint, float surface, float flatness) const;
 

@@ -40,14 +40,14 @@ Result<std::vector<std::uint32_t>> chosen(const EpisodeFile& file,
   return indices;
 }
 
-/// Gives the names that are used numbers in ascending order.
+/// Numbers the names that are used, in ascending order of the names.
 class UsedNames {
  public:
   explicit UsedNames(const std::vector<std::string>& all) : all_(all) {}
 
   void use(std::uint32_t index) { used_.insert(all_[index]); }
   [[nodiscard]] std::vector<std::string> names() const { return {used_.begin(), used_.end()}; }
-  /// By the file's index; only of used ones.
+  /// Numbers by the file's index; only valid for names that are used.
   [[nodiscard]] std::vector<std::uint32_t> numbers() const {
     const std::vector<std::string> sorted = names();
     std::vector<std::uint32_t> numbers;

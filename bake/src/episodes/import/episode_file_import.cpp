@@ -6,7 +6,7 @@
 namespace galactic::bake {
 namespace {
 
-/// The largest published set of Habitat has 50,000 episodes in half of that.
+/// The largest published set of Habitat, with 50,000 episodes, is half this size.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30U;
 
 }  // namespace

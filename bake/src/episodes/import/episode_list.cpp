@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-/// Adds the indices of one line; returns what is none of them, or "".
+/// Adds the indices of one line; returns the first part that is not an index, or "".
 std::string_view addIndices(std::string_view line, std::vector<std::uint32_t>& indices) {
   line = line.substr(0, line.find('#'));
   while (true) {

@@ -6,15 +6,15 @@
 
 namespace galactic::bake {
 
-/// The JSON document of a file of episodes, compressed with gzip or not.
+/// Reads the JSON document of a file of episodes, whether compressed with gzip or not.
 [[nodiscard]] Result<Json> readEpisodeJson(const std::filesystem::path& path);
 
-/// readEpisodeSet, of a document that is read already.
+/// readEpisodeSet for a document that has been read.
 [[nodiscard]] Result<SourceEpisodes> readEpisodeSetJson(const std::filesystem::path& path,
                                                         const Json& json,
                                                         const EpisodeImportOptions& options);
 
-/// readHabitatEpisodes, of a document that is read already.
+/// readHabitatEpisodes for a document that has been read.
 [[nodiscard]] Result<SourceEpisodes> readHabitatJson(const std::filesystem::path& path,
                                                      const Json& json,
                                                      const EpisodeImportOptions& options);

@@ -20,11 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Radians or meters of a joint, and the base's yaw: continuous joints may have turned often.
+/// Limit for positions of joints (radians or meters) and the base's yaw: continuous joints may have
+/// turned many times.
 constexpr double kLargestPosition = 1e6;
 constexpr std::int64_t kMostElements = std::numeric_limits<std::int32_t>::max();
 
-/// What is read of an episode set, all of it, and the first error.
+/// The content of an episode set, and the first error.
 class EpisodeSetReader {
  public:
   EpisodeSetReader(const fs::path& path, const EpisodeImportOptions& options)
@@ -36,7 +37,7 @@ class EpisodeSetReader {
   Result<EpisodeFile> read(const Json& root);
 
  private:
-  /// An index below `count`; 0 on an offence.
+  /// An index below `count`; 0 after an error.
   std::uint32_t index(const JsonNode& node, std::size_t count, const char* of);
   Rotation rotation(const JsonNode& node);
   /// world_from_object, for the frame of the object's pack.
@@ -46,10 +47,10 @@ class EpisodeSetReader {
   void readScenes(const JsonNode& list);
   void readObjects(const JsonNode& list, const std::vector<std::string>& assets);
   void readSpawns(const JsonNode& list);
-  /// What sets of our own say of the robot.
+  /// Reads what Galactic's own sets say about the robot.
   void readRobot(const JsonNode& set);
   void readEpisode(const JsonNode& node);
-  /// The range of spawns and the target among them.
+  /// Reads the range of spawns and the target among them.
   void readRange(const JsonNode& node, Episode& episode);
   void renameScenes(const JsonNode& list);
 
@@ -100,7 +101,7 @@ std::vector<std::string> EpisodeSetReader::readAssets(const JsonNode& list) {
 
 void EpisodeSetReader::readScenes(const JsonNode& list) {
   for (const JsonNode& scene : json_.elements(list)) {
-    // The grids are those of the scene's pack, and so are its render meshes.
+    // Ignores the scene's column grids and render meshes: those of its pack are used.
     json_.onlyKnown(scene, {"name", "columnGridSetName", "renderAssetInstances"});
     const JsonNode name = json_.require(scene, "name");
     file_.scenes.push_back(json_.text(name));
@@ -120,7 +121,8 @@ void EpisodeSetReader::renameScenes(const JsonNode& list) {
 
 void EpisodeSetReader::readObjects(const JsonNode& list, const std::vector<std::string>& assets) {
   for (const JsonNode& object : json_.elements(list)) {
-    // How the published generator stood them up: not needed for episodes that exist.
+    // The start rotations are for the published generator, and are not needed for existing
+    // episodes.
     json_.onlyKnown(object, {"renderAssetIndex", "startRotations"});
     const JsonNode asset = json_.require(object, "renderAssetIndex");
     const std::uint32_t at = index(asset, assets.size(), "render assets");

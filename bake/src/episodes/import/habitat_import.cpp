@@ -27,16 +27,16 @@ namespace fs = std::filesystem;
 using fit::Axes;
 
 constexpr double kLargestState = 1e6;
-/// Furniture that is open less than this counts as closed: radians or meters.
+/// Furniture that is open by less than this counts as closed: radians or meters.
 constexpr double kClosed = 1e-3;
 
-/// A rigid transform as Habitat writes it.
+/// A rigid transform in Habitat's format.
 struct RigidMatrix {
   Axes axes = fit::kIdentityAxes;
   Vec3d translation;
 };
 
-/// Numbers for names, in the order in which they come.
+/// Numbers names in the order in which they first occur.
 class NameList {
  public:
   std::uint32_t numberOf(const std::string& name) {
@@ -51,13 +51,13 @@ class NameList {
   std::vector<std::string> names_;
 };
 
-/// Which of several objects is meant by an instance handle: "mug_:0002" is the third of "mug".
+/// The object that an instance handle refers to: "mug_:0002" is the third object named "mug".
 struct HabitatInstance {
   std::string object;
   std::size_t number = 0;
 };
 
-/// Nothing where `handle` is none.
+/// None if `handle` is not an instance handle.
 std::optional<HabitatInstance> habitatInstance(std::string_view handle) {
   constexpr std::string_view kMark = "_:";
   const std::size_t mark = handle.rfind(kMark);
@@ -69,14 +69,14 @@ std::optional<HabitatInstance> habitatInstance(std::string_view handle) {
   return HabitatInstance{habitatName(handle.substr(0, mark)), number};
 }
 
-/// How often something was met that a pack cannot hold.
+/// How often the file had something that a pack cannot hold.
 struct Losses {
   std::size_t episodes = 0;
   std::size_t more_targets = 0;
   std::size_t open_furniture = 0;
 };
 
-/// What is read of a rearrangement dataset, and the first error.
+/// The content of a rearrangement dataset, and the first error.
 class HabitatReader {
  public:
   HabitatReader(const fs::path& path, const EpisodeImportOptions& options)
@@ -87,16 +87,16 @@ class HabitatReader {
   Result<EpisodeFile> read(const Json& root);
 
  private:
-  /// The numbers of the episode's objects of each name, ascending.
+  /// For each name, the numbers of the episode's objects with this name, ascending.
   using Instances = std::map<std::string, std::vector<std::size_t>>;
 
   void readEpisode(const JsonNode& node);
   std::uint32_t readScene(const JsonNode& node);
-  /// The names of the episode's objects, whose spawns are the last ones.
+  /// Reads the names of the episode's objects, and adds their spawns at the end of the list.
   std::vector<std::string> readObjects(const JsonNode& list);
   void readStart(const JsonNode& node, FileEpisode& read);
   void readFurniture(const JsonNode& states);
-  /// Goals, by the number of the target among the episode's objects.
+  /// Reads the goals, keyed by the target's number among the episode's objects.
   std::map<std::size_t, Pose> readTargets(const JsonNode& targets,
                                           const std::vector<std::string>& objects);
   std::optional<std::size_t> targetOf(const JsonNode& target, const std::string& handle,
@@ -223,7 +223,7 @@ void HabitatReader::readStart(const JsonNode& node, FileEpisode& read) {
                                                  "x, y, z, w of length 1",
                                                  length));
   }
-  // Where the robot's X axis points; a base that tips over has no heading.
+  // The direction of the robot's X axis; a base that is tipped over has no heading.
   const auto& [w, x, y, z] = rotation;
   const double ahead = 1 - 2 * (y * y + z * z);
   const double right = 2 * (x * z - w * y);
@@ -315,8 +315,8 @@ void HabitatReader::addEpisodes(const JsonNode& node, const FileEpisode& read,
 }
 
 void HabitatReader::readEpisode(const JsonNode& node) {
-  // What stands behind the targets is not needed to simulate: names for people, where furniture can
-  // be grasped, the furniture on which objects stand.
+  // The keys after the targets are not needed for simulation: names for people, where furniture can
+  // be grasped, and the furniture on which objects stand.
   json_.onlyKnown(
       node, {"scene_id", "start_position", "start_rotation", "ao_states", "rigid_objs", "targets",
              "episode_id", "scene_dataset_config", "additional_obj_config_paths", "info", "markers",

@@ -10,7 +10,7 @@ Result<std::map<std::string, Vec3>> objectCenters(const PackFile& objects) {
   std::map<std::string, Vec3> centers;
   for (const schema::Object* object : *objects.root().asset_as_ObjectSet()->objects()) {
     const schema::Bounds* bounds = object->bounds();
-    if (bounds == nullptr) continue;  // Only where nothing was verified.
+    if (bounds == nullptr) continue;  // Only in files that were not verified.
     const schema::Vec3& low = bounds->min();
     const schema::Vec3& high = bounds->max();
     centers[object->name()->str()] =

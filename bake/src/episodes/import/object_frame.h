@@ -6,28 +6,28 @@
 
 namespace galactic::bake {
 
-/// A rotation as w, x, y, z in double precision, as episode sets write them.
+/// A rotation as w, x, y, z in double precision, the format of episode sets.
 using Rotation = std::array<double, 4>;
 
-/// The rotation that turns points of an object's pack (Y up) into points of its mesh file, whose up
-/// axis is `up`: the opposite of what the importer of meshes does.
+/// The rotation that takes points of an object's pack (Y up) to points of its mesh file, whose up
+/// axis is `up`: the inverse of what the mesh importer does.
 [[nodiscard]] Rotation fileFromPack(UpAxis up);
 
-/// First `b`, then `a`.
+/// The rotation by `b`, followed by that by `a`.
 [[nodiscard]] Rotation product(const Rotation& a, const Rotation& b);
 
 /// The length of the four numbers.
 [[nodiscard]] double lengthOf(const Rotation& rotation);
 
-/// Made a unit quaternion. One that is of unit length to within the rounding of floats stays as it
-/// is: what was exported from a pack comes back as the same floats.
+/// The rotation as a unit quaternion. Stays as it is if its length is 1 to within float rounding,
+/// so that an export from a pack comes back with the same floats.
 [[nodiscard]] Rotation ofUnitLength(const Rotation& rotation);
 
-/// As floats. What the rounding of a turn to another frame and back leaves in parts that are nearly
-/// 0, the writer of packs takes away.
+/// The rotation in floats. Rounding may leave tiny parts that ought to be 0 after a change of frame
+/// and back; the writer of packs removes them.
 [[nodiscard]] Quat narrow(const Rotation& rotation);
 
-/// The same as a pose at `point`, meters.
+/// The rotation in floats, as a pose at `point` (meters).
 [[nodiscard]] Pose narrow(const std::array<double, 3>& point, const Rotation& rotation);
 
 }  // namespace galactic::bake

@@ -1,4 +1,4 @@
-// The only file of this folder that names Bullet.
+// The only file in this folder that uses Bullet.
 #include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
@@ -20,20 +20,21 @@ namespace {
 
 constexpr btScalar kGravity = -9.81F;
 constexpr btScalar kStep = 1.0F / 120;
-/// At rest: within so many steps it went less far than this, meters, and leaned over less than
-/// this, radians. Speeds say little: contacts without margins come and go, and things tremble.
+/// An object is at rest if during this many steps it moves less far than this (meters) and leans
+/// over less than this (radians). Speeds say little: contacts without margins come and go, so that
+/// objects tremble.
 constexpr int kWindow = 24;
 constexpr float kQuietWay = 5e-4F;
 constexpr float kQuietLean = 0.01F;
 constexpr int kMostWindows = 8;
-/// The object is let go this high over where it is put, meters, so that it begins outside of the
-/// triangles: a grid rounds heights by less.
+/// The object is let go this high above where it is put, meters, so that it begins outside the
+/// triangles: rounding of a grid's heights is smaller.
 constexpr float kDrop = 0.0005F;
 constexpr btScalar kFriction = 0.8F;
-/// Holds what is nearly round, as the carpet or the dent of a real apple does.
+/// Keeps nearly round objects from rolling away, as a carpet does, or the dents of a real apple.
 constexpr btScalar kRollingFriction = 0.002F;
 constexpr btScalar kMass = 0.5F;
-/// A box of no thickness has no inertia: half of the least one, meters.
+/// A box without thickness has no inertia: this is the least half extent, meters.
 constexpr float kThinnest = 5e-4F;
 
 btVector3 toBullet(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -51,7 +52,7 @@ Pose fromBullet(const btTransform& transform) {
            static_cast<float>(q.w())}};
 }
 
-/// Pools for one pair of objects at a time; Bullet's defaults are megabytes.
+/// Pools for a single pair of objects; Bullet's defaults take megabytes.
 btDefaultCollisionConstructionInfo smallPools() {
   btDefaultCollisionConstructionInfo info;
   info.m_defaultMaxPersistentManifoldPoolSize = 64;
@@ -71,9 +72,9 @@ std::unique_ptr<btPolyhedralConvexShape> shapeOf(const SettlingBody& body) {
     hull->recalcLocalAabb();
     shape = std::move(hull);
   }
-  // Bullet's default of 4 cm would grow every surface.
+  // Bullet's default of 4 cm would enlarge all shapes.
   shape->setMargin(0);
-  // Contacts of whole faces at once, not one corner per step.
+  // Finds the contacts of whole faces at once, rather than one corner per step.
   shape->initializePolyhedralFeatures();
   return shape;
 }
@@ -90,7 +91,7 @@ btRigidBody::btRigidBodyConstructionInfo bodyInfo(btScalar mass, btCollisionShap
   return info;
 }
 
-/// How far the object's up axis has turned away from where it was, radians.
+/// The angle by which the object's up axis has turned, radians.
 float leanBetween(const Quat& before, const Quat& after) {
   const Vec3 up = rotate(after * conjugate(before), {0, 1, 0});
   return std::acos(std::clamp(up.y, -1.0F, 1.0F));
@@ -112,7 +113,7 @@ bool isQuiet(const Pose& before, const Pose& now) {
          leanBetween(before.rotation, now.rotation) <= kQuietLean;
 }
 
-/// One object over the scene, and all that Bullet remembers of it.
+/// One object above the scene, and all of Bullet's state for it.
 class Drop {
  public:
   Drop(btBvhTriangleMeshShape& mesh, const SettlingBody& body, const Pose& world_from_body)
@@ -179,7 +180,7 @@ Settled SettlingScene::settle(const SettlingBody& body, const Pose& world_from_o
     for (int n = 0; n < kWindow; ++n) drop.step();
     const Pose now = drop.pose();
     const SettlingEnd end = judge(put, now);
-    // The drop is in the first window.
+    // In the first window the object drops.
     const bool is_quiet = window > 0 && isQuiet(before, now);
     if (is_quiet || end != SettlingEnd::kRests) return {end, now * body_from_object};
   }

@@ -9,8 +9,8 @@
 namespace galactic::bake {
 namespace {
 
-/// The robot follows the floor, whose height it finds again to rounding; a push is more. Meters and
-/// radians.
+/// The robot follows the floor and finds its height again to within rounding; a push moves it by
+/// more. Meters and radians.
 constexpr float kStill = 1e-4F;
 
 bool isNear(const Vec3& a, const Vec3& b) {
@@ -25,15 +25,16 @@ bool samePlace(const EnvState& a, const EnvState& b) {
          std::ranges::equal(a.joint_positions, b.joint_positions, near);
 }
 
-/// Whether the simulator lets the robot stand where the episode puts it: it pushes robots clear.
+/// Whether the simulator leaves the robot where the episode puts it, and has not pushed it clear of
+/// anything.
 bool standsWhereWanted(const EnvState& state, const Episode& episode) {
   Vec3 wanted = episode.base_position;
   wanted.y = state.world_from_root.translation.y;
   return isNear(state.world_from_root.translation, wanted);
 }
 
-/// Takes the step, and says what became of each of the simulator's envs, which stand at the start
-/// of the episodes that it did not skip.
+/// Takes the step and judges each of the simulator's envs. They are at the start of the episodes
+/// that the simulator did not skip.
 void judgeStep(BatchSimulator& simulator, const SourceEpisodes& episodes,
                std::vector<ReplayEnd>& ends) {
   std::vector<EnvState> before;

@@ -13,7 +13,7 @@
 namespace galactic::bake {
 namespace {
 
-/// The set with one of its episodes.
+/// A set with only one of the episodes.
 SourceEpisodes alone(const SourceEpisodes& all, std::size_t number) {
   SourceEpisodes set;
   set.name = all.name;
@@ -32,7 +32,7 @@ SourceEpisodes alone(const SourceEpisodes& all, std::size_t number) {
   return set;
 }
 
-/// How an episode ended; empty: solved.
+/// How an episode failed; empty if it was solved.
 using Outcome = std::string;
 
 Result<Outcome> play(const World& world, std::uint32_t most_steps) {

@@ -10,7 +10,7 @@
 
 namespace galactic::bake {
 
-/// A file in memory, aligned as packs have to be.
+/// A file in memory, aligned as packs require.
 class MemoryWorld::FileBytes {
  public:
   FileBytes(const PackHeader& header, std::span<const std::byte> payload)

@@ -10,10 +10,10 @@
 
 namespace galactic::bake {
 
-/// A world of packs that are open and of episodes that are in no file yet.
+/// A world of packs that are open and of episodes that are not in a file yet.
 class MemoryWorld {
  public:
-  /// `packs`: scenes, objects and the robot; they must outlive the result, and are not checked
+  /// `packs` are scenes, objects and the robot; they must outlive the result, and are not checked
   /// again. Fails with the errors of encodeEpisodePack and World::from.
   [[nodiscard]] static Result<MemoryWorld> open(std::span<const PackFile* const> packs,
                                                 const SourceEpisodes& episodes);
@@ -24,7 +24,7 @@ class MemoryWorld {
   class FileBytes;
   MemoryWorld(std::shared_ptr<const FileBytes> episodes, World world);
 
-  /// What the world looks into.
+  /// The bytes that the world refers to.
   std::shared_ptr<const FileBytes> episodes_;
   World world_;
 };

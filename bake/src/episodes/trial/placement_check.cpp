@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kMostLift = PlacementOptions{}.most_lift;
 
-/// The lowest lift with which all spheres are free.
+/// The least lift that makes all spheres free.
 std::optional<float> liftOutOfScene(const Scene& scene, const ObjectModel& model,
                                     const Pose& world_from_object) {
   float lift = 0;

@@ -5,10 +5,10 @@
 
 namespace galactic::bake {
 
-/// Whether a run that releases the object at `world_from_object` leaves it there: lifted out of the
-/// scene by as little as possible, at most by the run's PlacementOptions::most_lift, its spheres
-/// are free, and what they sink to, a floor and not the end of the grid, is no farther away than
-/// that. The scene's radii must be the object's.
+/// Whether a run that releases the object at `world_from_object` leaves it there. The run lifts the
+/// object out of the scene by the least distance that makes its spheres free, at most by its
+/// PlacementOptions::most_lift; then the object must sink by no more than that, onto a floor and
+/// not onto the end of the grid. The scene must have the object's radii.
 [[nodiscard]] bool canBeReleased(const Scene& scene, const ObjectModel& model,
                                  const Pose& world_from_object);
 

@@ -9,27 +9,27 @@
 
 namespace galactic::bake {
 
-/// The shape of an object that is settled: convex.
+/// The convex shape of an object for settling.
 struct SettlingBody {
   /// object_from_body: the body's origin is its center of mass.
   Pose object_from_body;
-  /// Corners of the hull in the frame of the body, meters; empty: the box.
+  /// Corners of the hull in the frame of the body, meters; empty for a box.
   std::vector<Vec3> corners;
-  /// Of the box, meters; not used where there are corners.
+  /// Half extents of the box, meters; not used if there are corners.
   Vec3 half_extents;
 };
 
-/// The box of an object, of even density.
+/// The box of an object, with uniform density.
 [[nodiscard]] SettlingBody boxBody(const ObjectModel& model);
 
-/// The convex hull of points in the object's frame (meters), of even density; the box of `model`
-/// where they fill no volume.
+/// The convex hull of points in the object's frame (meters), with uniform density; the box of
+/// `model` if the points enclose no volume.
 [[nodiscard]] SettlingBody hullBody(std::span<const Vec3> points, const ObjectModel& model);
 
-/// What became of an object that was let go.
+/// What happened to an object that was let go.
 enum class SettlingEnd {
   kRests,   ///< It came to rest about where it was.
-  kMoved,   ///< It went away further than kSettlingWay, or did not come to rest.
+  kMoved,   ///< It moved further than kSettlingWay, or did not come to rest.
   kTipped,  ///< It leans by more than kSettlingLean.
 };
 
@@ -39,12 +39,12 @@ struct Settled {
   Pose pose;
 };
 
-/// How far a settled object may have moved, meters, and leaned over, radians.
+/// How far a settled object may have moved (meters) and leaned over (radians).
 inline constexpr float kSettlingWay = 0.01F;
 inline constexpr float kSettlingLean = 0.0873F;
 
-/// The triangles of a scene on which objects are let go, one at a time. Implemented with Bullet, in
-/// bullet_settling.cpp.
+/// The triangles of a scene onto which objects are dropped, one at a time. Implemented with Bullet,
+/// in bullet_settling.cpp.
 class SettlingScene {
  public:
   /// Copies what it needs.
@@ -55,9 +55,9 @@ class SettlingScene {
   SettlingScene(const SettlingScene&) = delete;
   SettlingScene& operator=(const SettlingScene&) = delete;
 
-  /// Lets the object go at `world_from_object`, a little higher, in a world of its own: nothing is
-  /// left of earlier calls, and the result depends on the arguments only. Steps of fixed length, at
-  /// most two seconds. Thread-safe.
+  /// Lets the object go slightly above `world_from_object`, in a world of its own: earlier calls
+  /// leave no trace, and the result depends only on the arguments. Takes steps of fixed length, for
+  /// at most two seconds. Thread-safe.
   [[nodiscard]] Settled settle(const SettlingBody& body, const Pose& world_from_object) const;
 
  private:

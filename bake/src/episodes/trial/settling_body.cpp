@@ -7,7 +7,7 @@
 namespace galactic::bake {
 namespace {
 
-/// A hull this small (cubic meters) has no center of mass in floats.
+/// The center of mass of a smaller hull (cubic meters) cannot be computed in floats.
 constexpr double kLeastVolume = 1e-12;
 
 struct Mass {
@@ -15,7 +15,7 @@ struct Mass {
   double volume = 0;
 };
 
-/// Adds the tetrahedron of a triangle and `apex`.
+/// Adds the tetrahedron between a triangle and `apex`.
 void addTetrahedron(const Vec3d& apex, const std::array<Vec3d, 3>& triangle, Mass& mass) {
   const Vec3d a = triangle[0] - apex;
   const Vec3d b = triangle[1] - apex;
@@ -25,7 +25,7 @@ void addTetrahedron(const Vec3d& apex, const std::array<Vec3d, 3>& triangle, Mas
   mass.moment = mass.moment + (apex + (a + b + c) * 0.25) * volume;
 }
 
-/// Each face as a fan, with the first corner as the apex of all tetrahedra.
+/// Splits each face into a fan; the first corner is the apex of all tetrahedra.
 Mass massOf(const fit::ConvexHull& hull) {
   Mass mass;
   const Vec3d apex = hull.corners.front().rounded;
