@@ -12,31 +12,31 @@ namespace galactic::bake {
 
 enum class DescribedGeometry : std::uint32_t { kBox, kCylinder, kSphere, kEllipsoid, kMesh };
 
-/// A visual or collision element as the text states it: Z up.
+/// A visual or collision element as in the text: Z up.
 struct DescribedShape {
   DescribedGeometry geometry = DescribedGeometry::kBox;
   /// Box: sides. Cylinder: radius, length. Sphere: radius. Ellipsoid: half axes. Mesh: scale.
   std::array<double, 3> size{};
-  /// Mesh: the reference to its file, unless it stands in the text.
+  /// For a mesh, the reference to its file, unless the mesh is in the text itself.
   std::string mesh;
-  /// Mesh that stands in the text: index into RobotDescription::meshes.
+  /// For a mesh that is in the text itself, its index into RobotDescription::meshes.
   std::optional<std::uint32_t> own_mesh;
   Affine link_from_shape{};
   bool has_color = false;
   /// sRGB and alpha.
   std::array<double, 4> color{};
-  /// A texture that the material names.
+  /// The texture that the material names.
   std::string texture;
-  /// Whether color and texture count whatever a mesh's file says of its looks (MJCF). Else (URDF)
-  /// the color counts where the file says nothing, and the texture never.
+  /// If true (MJCF), color and texture replace the looks that a mesh's file states. If false
+  /// (URDF), the color counts only if the file states no looks, and the texture never does.
   bool hides_looks = false;
 };
 
-/// A mesh that a link's mass is spread over, where the text has no inertia for it.
+/// A mesh that gives a link its mass and inertia if the text states none.
 struct DescribedMass {
   DescribedShape mesh;
   bool has_mass = false;
-  /// Kilograms, where it has one; else its volume weighs `density` kg/m^3.
+  /// Kilograms, if it has a mass; otherwise its volume weighs `density` kg/m^3.
   double mass = 0;
   double density = 0;
 };
@@ -45,7 +45,7 @@ struct DescribedLink {
   std::string name;
   std::vector<DescribedShape> visuals;
   std::vector<DescribedShape> collisions;
-  /// What it weighs, if that was asked for: the sum of these.
+  /// The link's mass is the sum of these and `masses`; empty unless masses were requested.
   std::vector<LinkInertial> inertials;
   std::vector<DescribedMass> masses;
   /// See SourceLink.
@@ -62,47 +62,48 @@ struct DescribedJoint {
   bool has_limits = false;
   double lower = 0;
   double upper = 0;
-  /// Empty: mimics nothing.
+  /// Name of the joint that it mimics; empty if none.
   std::string mimic;
   double multiplier = 1;
   double offset = 0;
-  /// Where the file says that the robot rests.
+  /// Whether the file states the rest position of the joint.
   bool has_rest = false;
   double rest = 0;
 };
 
-/// A mesh that stands in the text itself.
+/// A mesh that is in the text itself.
 struct DescribedMesh {
   std::string name;
   std::vector<std::array<double, 3>> points;
   std::vector<Triangle> triangles;
 };
 
-/// Names of two links.
+/// The names of two links.
 struct DescribedPair {
   std::string first;
   std::string second;
 };
 
-/// A robot as its text states it, elements in the order of the text; nothing checked beyond syntax.
+/// A robot as in its text, with elements in the order of the text; nothing beyond syntax has been
+/// checked.
 struct RobotDescription {
   std::string name;
   std::vector<DescribedLink> links;
   std::vector<DescribedJoint> joints;
   std::vector<DescribedMesh> meshes;
-  /// Kilograms to which all masses are brought; 0: they are as stated.
+  /// Kilograms that all masses are scaled to; if 0, they stay as they are.
   double total_mass = 0;
-  /// Links that may touch.
+  /// Pairs of links that may touch.
   std::vector<DescribedPair> touching;
-  /// Files that were read beside the robot's own.
+  /// Files that were read in addition to the robot's own.
   std::vector<std::string> included;
-  /// Files that were looked for and are not there.
+  /// Files that were looked for but do not exist.
   std::vector<std::string> absent;
-  /// What the reader warns of.
+  /// Warnings of the reader.
   std::vector<std::string> warnings;
 };
 
-/// What somebody wants to know of a robot's file.
+/// The part of a robot's file to read.
 enum class DescriptionPart { kShapesAndJoints, kMasses };
 
 }  // namespace galactic::bake

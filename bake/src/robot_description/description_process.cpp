@@ -66,7 +66,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// XML trees take some tens of bytes per byte of text.
+/// XML trees take a few dozen bytes per byte of text.
 constexpr std::uint64_t kMemoryLimit = std::uint64_t{8} << 30U;
 
 Error processFailure(const fs::path& path, const ProcessFailure& failure) {
@@ -93,7 +93,7 @@ Error processFailure(const fs::path& path, const ProcessFailure& failure) {
   return error;
 }
 
-/// Parses a file in a child: `parse` gives a Result<T>.
+/// Parses a file in a child process; `parse` returns a Result<T>.
 template <class T, class Parse>
 Result<T> parseIsolated(const fs::path& path, std::chrono::seconds time_limit, Parse parse) {
   ASSIGN_OR_RETURN(const auto text, readRobotText(path));

@@ -8,14 +8,15 @@
 
 namespace galactic::bake {
 
-/// Reads a robot's file, and what it includes, in a process of its own, so that no XML can crash or
-/// hang this one. Fails with kIo, kUnsupported (xacro, elements of MJCF that make others) or
-/// kInvalidInput (empty, beyond kMaxRobotFileBytes, refused by the parser, too deep, too slow).
+/// Reads a robot's file, and the files it includes, in a process of its own, so that no XML can
+/// crash or hang this one. Fails with kIo, with kUnsupported (xacro, or MJCF elements that generate
+/// others), or with kInvalidInput (the file is empty, exceeds kMaxRobotFileBytes, is refused by the
+/// parser, is nested too deep, or takes too long).
 [[nodiscard]] Result<RobotDescription> readDescription(const std::filesystem::path& path,
                                                        const DescriptionRequest& request,
                                                        std::chrono::seconds time_limit);
 
-/// The same for the <link_sphere_approximation> elements of an SRDF file, Z up as it is.
+/// The same for the <link_sphere_approximation> elements of an SRDF file; the spheres stay Z up.
 [[nodiscard]] Result<std::vector<LinkSpheres>> readSrdf(const std::filesystem::path& path,
                                                         std::chrono::seconds time_limit);
 

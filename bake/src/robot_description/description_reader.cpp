@@ -12,7 +12,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Where the XML construct that starts with '<' at `at` ends: behind its '>'.
+/// Where the XML construct that starts with '<' at `at` ends: one past its '>'.
 std::size_t endOfTag(std::string_view text, std::size_t at) {
   const auto behind = [&](std::string_view end) {
     const std::size_t found = text.find(end, at);
@@ -36,8 +36,8 @@ std::size_t endOfTag(std::string_view text, std::size_t at) {
   return text.size();
 }
 
-/// Whether elements of well-formed XML nest at most kMaxXmlNesting deep; for other text a guess,
-/// which spares the parser the worst.
+/// Whether elements of well-formed XML nest at most kMaxXmlNesting deep. For other text this is a
+/// guess, which spares the parser the worst cases.
 bool nestsModerately(std::string_view text) {
   int depth = 0;
   for (std::size_t at = text.find('<'); at != std::string_view::npos;) {

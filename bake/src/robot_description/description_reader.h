@@ -8,30 +8,30 @@
 
 namespace galactic::bake {
 
-/// What is read of a robot's file, and what it may name.
+/// The part of a robot's file to read, and where files that it names may be.
 struct DescriptionRequest {
   DescriptionPart part = DescriptionPart::kShapesAndJoints;
-  /// Whether files that the text includes may lie anywhere: see RobotImportOptions.
+  /// Whether files that the text includes may be anywhere; see RobotImportOptions.
   bool allow_outside = false;
 };
 
-/// Elements that nest deeper are refused.
+/// Deeper nesting of elements is refused.
 inline constexpr int kMaxXmlNesting = 100;
 
-/// Refuses, with kInvalidInput, what the XML parser must not see: no text, or one that is nested so
-/// deep that the parser would exhaust the stack. `where` is put in front of errors.
+/// Refuses, with kInvalidInput, text that the XML parser must not see: empty, or nested so deep
+/// that the parser would exhaust the stack. Errors begin with `where`.
 [[nodiscard]] Result<void> checkRobotText(std::string_view text, const std::string& where);
 
-/// The text of a robot's file, or of one that it includes, after checkRobotText. Fails with kIo,
-/// and with kInvalidInput beyond kMaxRobotFileBytes.
+/// Reads the text of a robot's file, or of one that it includes, and passes it through
+/// checkRobotText. Fails with kIo, and with kInvalidInput beyond kMaxRobotFileBytes.
 [[nodiscard]] Result<std::string> readRobotText(const std::filesystem::path& path);
 
-/// The name of the outermost element, found without a parser; empty where there is none.
+/// The name of the outermost element, found without a parser; empty if there is none.
 [[nodiscard]] std::string_view rootElementOf(std::string_view text);
 
-/// Parses URDF or MJCF text, told apart by the outermost element, after checkRobotText. For a
-/// process of its own: broken XML may crash or hang the parser. `path` is put in front of errors;
-/// what MJCF includes is read relative to it.
+/// Parses URDF or MJCF text, depending on the outermost element, after checkRobotText. Use it in a
+/// process of its own: broken XML may crash or hang the parser. Errors begin with `path`; files
+/// that an MJCF includes are relative to it.
 [[nodiscard]] Result<RobotDescription> parseDescription(const std::string& text,
                                                         const std::filesystem::path& path,
                                                         const DescriptionRequest& request);

@@ -6,9 +6,9 @@
 
 namespace galactic::bake {
 
-/// (x, y, z) to (x, z, -y): the runtime's frame, Y up and X forward, from the URDF's.
+/// Takes (x, y, z) to (x, z, -y): from the URDF's frame to the runtime's, Y up and X forward.
 inline constexpr Affine kYUpFromZUp{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0};
-/// And back.
+/// The inverse of kYUpFromZUp.
 inline constexpr Affine kZUpFromYUp{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0};
 
 /// Adding zero turns -0 into +0, so that equal transforms have equal bytes.

@@ -22,11 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parts smaller or larger than this, in all directions, draw a question about their unit. Meters.
+/// A part that is smaller or larger than this in all directions causes a warning about its unit.
+/// Meters.
 constexpr double kSmallestPart = 0.002;
 constexpr double kLargestPart = 10;
 
-/// Colors of robots' files are those on a screen.
+/// Colors in robots' files are those on a screen (sRGB).
 std::array<float, 4> linearColor(const std::array<double, 4>& c) {
   const auto channel = [&](std::size_t n) {
     return static_cast<float>(srgbDecoded(std::clamp(c[n], 0.0, 1.0)));
@@ -64,7 +65,7 @@ std::string_view sizeName(DescribedGeometry geometry) {
   return "";
 }
 
-/// Numbers that no robot has. Sizes of 0 pass but for a mesh's scale.
+/// Refuses numbers that no robot has. Sizes of 0 pass, except in the scale of a mesh.
 Result<void> checkShape(const DescribedShape& shape, const std::string& place) {
   const std::span sizes(shape.size.data(), sizeCount(shape.geometry));
   const auto describe = [&](std::string_view wanted) {
@@ -99,14 +100,14 @@ Result<void> checkShape(const DescribedShape& shape, const std::string& place) {
   return {};
 }
 
-/// The box around a mesh that was read as Z up, along the axes of its file.
+/// Extents, along the axes of the file, of a mesh that was read as Z up.
 std::array<double, 3> sizeInFile(const SourceAsset& asset) {
   const std::array<double, 3> size = extentsOf(asset);
   return {size[0], size[2], size[1]};
 }
 
-/// A mesh that stands in the robot's file, as importMesh would give it: its convex hull where it
-/// has points only, as in MuJoCo. `file`: the name of the robot's file.
+/// A mesh that is inside the robot's file, in the form that importMesh returns. If it only has
+/// points, this is their convex hull, as in MuJoCo. `file` is the name of the robot's file.
 SourceAsset assetOf(const DescribedMesh& described, const std::string& file) {
   SourceAsset asset;
   asset.name = described.name;
@@ -158,7 +159,7 @@ void GeometryBuilder::warn(const std::string& place, const std::string& message)
 
 Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& file,
                                                               bool hides_looks) {
-  // The points as the file has them are taken for Z up, whatever up axis it states.
+  // Takes the points in the file as Z up, whatever up axis the file states.
   MeshImportOptions mesh_options;
   mesh_options.up = UpAxis::kZ;
   mesh_options.smallest_size = 0;
@@ -316,7 +317,7 @@ Result<std::optional<LinkShape>> GeometryBuilder::convert(const DescribedShape& 
       break;
     }
   }
-  // Primitives and meshes are Y up in their own frame, too.
+  // Primitives and meshes are converted to Y up in their own frames, too.
   converted.link_from_shape = conjugate(up_from_file_, link_from_shape, kZUpFromYUp);
   if (shape.has_color) converted.color = linearColor(shape.color);
   converted.hides_looks = shape.hides_looks;

@@ -14,27 +14,28 @@
 
 namespace galactic::bake {
 
-/// Turns the shapes of a description's links into those of a SourceRobot, loading each mesh file
-/// once.
+/// Converts the shapes of a description's links to those of a SourceRobot, and loads each mesh file
+/// only once.
 class GeometryBuilder {
  public:
-  /// Fills in the meshes, files, warnings and resolutions of `robot`. `own_meshes` are those that
-  /// stand in the robot's file, at `path`.
+  /// Fills in the meshes, files, warnings and resolutions of `robot`. `own_meshes` are the meshes
+  /// inside the robot's file, which is at `path`.
   GeometryBuilder(const std::filesystem::path& path, std::span<const DescribedMesh> own_meshes,
                   const RobotImportOptions& options, SourceRobot& robot);
 
-  /// Fills in the shapes of `to`. Fails with kInvalidInput on broken numbers, and when the link
-  /// lost all the geometry that it had, unless the options allow it.
+  /// Fills in the shapes of `to`. Fails with kInvalidInput on invalid numbers, and if the link lost
+  /// all its geometry, unless the options allow this.
   Result<void> addShapes(const DescribedLink& from, SourceLink& to);
 
-  /// Fills in where the meshes of the links so far are not, and what else decided where they are.
+  /// Records where the meshes of the links so far were looked for in vain, and which other files
+  /// the search depended on.
   void noteSearch();
 
  private:
-  /// A mesh that was loaded, or why there is none.
+  /// A mesh that was loaded, or the reason why it was not.
   struct LoadedMesh {
     std::optional<std::uint32_t> index;
-    /// Of the box around its points, in the frame of the file; meters.
+    /// Extents of the box around its points, in the frame of the file; meters.
     std::array<double, 3> size{};
     std::string failure;
   };
@@ -44,33 +45,33 @@ class GeometryBuilder {
     const char* kind;
   };
 
-  /// A shape that was lost, and why.
+  /// A shape that was lost, and the reason.
   struct LostShape {
     std::string place;
     std::string reason;
   };
 
-  /// The shapes of the list that were lost; nothing warned of them.
+  /// Adds the shapes of the list; returns those that were lost, of which it does not warn.
   Result<std::vector<LostShape>> addList(const DescribedLink& link, const ShapeList& list);
-  /// The shape, or nothing when it is lost or has no size.
+  /// The shape; none if it is lost or has no size.
   Result<std::optional<LinkShape>> convert(const DescribedShape& shape, const std::string& place,
                                            std::vector<LostShape>& lost);
-  /// The mesh of the shape, or nothing when it is lost.
+  /// The mesh of the shape; none if it is lost.
   Result<std::optional<std::uint32_t>> loadMesh(const DescribedShape& shape,
                                                 const std::string& place,
                                                 std::vector<LostShape>& lost);
-  /// The index of a mesh that is there; warns where its size is odd.
+  /// The index of a mesh; warns if its size is suspicious.
   std::optional<std::uint32_t> checkedMesh(const DescribedShape& shape, const std::string& place,
                                            const LoadedMesh& mesh);
-  /// Where the reference leads; says so the first time.
+  /// The file that the reference leads to; recorded the first time.
   const MeshResolution& resolve(const std::string& reference, const std::string& place);
-  /// `hides_looks`: nothing warns of looks that are missing.
+  /// `hides_looks` suppresses warnings of missing looks.
   Result<LoadedMesh> loadFile(const std::filesystem::path& file, bool hides_looks);
-  /// A mesh that stands in the robot's file; `own_mesh`: its index among these.
+  /// Loads a mesh that is inside the robot's file; `own_mesh` is its index among these.
   LoadedMesh& loadOwn(std::uint32_t own_mesh);
-  /// The image that the shape is to be drawn with; empty, with a warning, where there is none.
+  /// The image that the shape is to be drawn with; empty, with a warning, if it is missing.
   std::string findTexture(const DescribedShape& shape, const std::string& place);
-  /// The place without the name of the robot's file, which every warning would repeat.
+  /// `place` without the name of the robot's file, which every warning would repeat.
   [[nodiscard]] std::string withoutFile(const std::string& place) const;
   void warn(const std::string& place, const std::string& message);
 

@@ -22,7 +22,7 @@ constexpr std::chrono::seconds kTimeLimit{60};
 Result<void> checkSphere(const HandSphere& sphere, const std::string& place) {
   const auto within = [](double v) { return std::abs(v) <= kMaxCoordinate; };
   const auto& c = sphere.center;
-  // NaN compares false.
+  // Comparisons with NaN are false.
   if (within(c[0]) && within(c[1]) && within(c[2]) && within(sphere.radius) && sphere.radius > 0) {
     return {};
   }

@@ -6,13 +6,15 @@
 
 namespace galactic::bake {
 
-/// The <sphere> collision elements of a URDF, as the tools foam and VAMP write them; other shapes
-/// are left out with a warning. Fails as importRobot does on broken text, and with kInvalidInput
-/// when no link has a sphere or a sphere is not finite or has no positive radius.
+/// Reads the <sphere> collision elements of a URDF, as the tools foam and VAMP write them; leaves
+/// out other shapes, with a warning. Fails as importRobot does on broken text, and with
+/// kInvalidInput if no link has a sphere, or if a sphere is not finite or its radius is not
+/// positive.
 [[nodiscard]] Result<HandSpheres> readSpherizedRobot(const std::filesystem::path& path);
 
-/// The <link_sphere_approximation> elements of an SRDF (MoveIt). MoveIt's way to say that a link
-/// has no spheres, a single one of radius 0, leaves the link out. Fails as readSpherizedRobot.
+/// Reads the <link_sphere_approximation> elements of an SRDF (MoveIt). Leaves out links with a
+/// single sphere of radius 0, which is how MoveIt says that a link has no spheres. Fails as
+/// readSpherizedRobot does.
 [[nodiscard]] Result<HandSpheres> readSrdfSpheres(const std::filesystem::path& path);
 
 }  // namespace galactic::bake

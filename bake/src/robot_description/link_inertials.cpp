@@ -20,11 +20,11 @@ namespace fs = std::filesystem;
 using Point = std::array<double, 3>;
 using Corners = std::array<Point, 3>;
 
-/// Meshes of less volume than this share of the box around them have none that tells of their mass:
-/// they are open, or thin, or inside out in places.
+/// A mesh whose volume is less than this share of the box around it says nothing about its mass: it
+/// is open, or thin, or inside out in places.
 constexpr double kLeastFilling = 1e-3;
 
-/// Of a solid of density 1: its volume, and the integrals of the coordinates and of their products
+/// For a solid of density 1: its volume, and the integrals of the coordinates and of their products
 /// (xx, yy, zz, xy, xz, yz).
 struct Integrals {
   double volume = 0;
@@ -55,7 +55,7 @@ Integrals integralsOf(const std::vector<Corners>& triangles) {
   return sum;
 }
 
-/// Those of the box around the triangles.
+/// The integrals of the box around the triangles.
 Integrals integralsOfBox(const std::vector<Corners>& triangles) {
   Point least = triangles.front()[0];
   Point most = least;
@@ -72,7 +72,7 @@ Integrals integralsOfBox(const std::vector<Corners>& triangles) {
   box.volume = 1;
   for (std::size_t n = 0; n < 3; ++n) {
     middle[n] = (least[n] + most[n]) / 2;
-    // A flat mesh has a mass all the same.
+    // Even a flat mesh has a mass.
     constexpr double kThinnest = 1e-4;
     box.volume *= std::max(most[n] - least[n], kThinnest);
   }
@@ -100,7 +100,7 @@ LinkInertial inertialOf(const Integrals& solid, double mass) {
   return inertial;
 }
 
-/// The parts of one link as one.
+/// Combines the parts of one link.
 LinkInertial sumOf(const std::string& link, const std::vector<LinkInertial>& parts) {
   LinkInertial sum{.link = link, .mass = 0, .center = {}, .moments = {}};
   for (const LinkInertial& part : parts) {
@@ -122,14 +122,14 @@ LinkInertial sumOf(const std::string& link, const std::vector<LinkInertial>& par
   return sum;
 }
 
-/// What the meshes of a robot's links weigh, each file read once.
+/// Computes the masses of the meshes of a robot's links; reads each file only once.
 class MeshWeights {
  public:
   MeshWeights(const fs::path& path, const RobotDescription& model,
               const RobotImportOptions& options)
       : geometry_(path, model.meshes, options, robot_) {}
 
-  /// Nothing where the mesh is missing, which an import tells of.
+  /// None if the mesh is missing, which an import reports.
   Result<std::optional<LinkInertial>> of(const DescribedMass& mass) {
     DescribedLink link;
     link.name = "mass";
@@ -145,7 +145,7 @@ class MeshWeights {
   }
 
  private:
-  /// In the link's frame, Z up, outside in front.
+  /// In the link's frame, Z up, with the outside in front.
   [[nodiscard]] std::vector<Corners> trianglesOf(const SourceLink& link) const {
     std::vector<Corners> triangles;
     for (const LinkShape& shape : link.collisions) {

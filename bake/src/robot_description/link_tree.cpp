@@ -15,12 +15,12 @@
 namespace galactic::bake {
 namespace {
 
-/// Shorter axes have no direction worth the name.
+/// The direction of shorter axes is meaningless.
 constexpr double kShortestAxis = 1e-6;
-/// Axes are often written with three digits: no warning for those.
+/// Axes are often written with three digits, which causes no warning.
 constexpr double kAxisTolerance = 1e-3;
-/// Limits of revolute joints in between are more likely degrees than radians: few joints turn twice
-/// either way, and those that turn for ever have limits far beyond.
+/// Limits of revolute joints in this range are more likely degrees than radians: few joints turn
+/// twice either way, and those that turn endlessly have limits far beyond.
 constexpr double kFewestDegrees = 4 * std::numbers::pi;
 constexpr double kMostDegrees = 720;
 
@@ -32,7 +32,7 @@ std::string jointPlace(const std::string& where, const DescribedJoint& joint) {
   return fmt::format("{}: joint '{}'", where, joint.name);
 }
 
-/// Per link: the joints to its children, and the joint to its parent.
+/// For each link, the joints to its children and the joint to its parent.
 class Tree {
  public:
   Tree(const RobotDescription& model, const std::string& where) : model_(model), where_(where) {}

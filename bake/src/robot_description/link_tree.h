@@ -19,13 +19,14 @@ struct TreeLink {
   std::optional<std::size_t> joint;
 };
 
-/// The links, root first and parents before children (depth first, children in the order of the
-/// model's joints). Fails with kInvalidInput unless the joints make all links one tree.
+/// The links, with the root first and parents before their children (depth first, children in the
+/// order of the model's joints). Fails with kInvalidInput unless the joints connect all links into
+/// one tree.
 [[nodiscard]] Result<std::vector<TreeLink>> orderTree(const RobotDescription& model,
                                                       const std::string& where);
 
 /// Checks the numbers of joints: finite, within bounds, limits in order, axes with a direction.
-/// Normalizes the axes; what is doubtful is added to `warnings`.
+/// Normalizes the axes, and adds doubtful values to `warnings`.
 [[nodiscard]] Result<void> checkJoints(RobotDescription& model, const std::string& where,
                                        std::vector<std::string>& warnings);
 

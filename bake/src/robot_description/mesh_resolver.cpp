@@ -17,14 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How deep below a search root packages are looked for, and in how many folders at most.
+/// Depth below a search root to which packages are looked for, and the greatest number of folders.
 constexpr int kSearchDepth = 4;
 constexpr std::size_t kMostSearchedFolders = 20'000;
-/// A package.xml is small; of others only this much is looked at.
+/// A package.xml is small; of a larger one only this much is read.
 constexpr std::size_t kPackageFileBytes = 65'536;
 
-/// The first file by name in the folder of `path` that has its name but for upper and lower case;
-/// empty where there is none.
+/// In the folder of `path`, the first name that differs from its name only in upper and lower case;
+/// empty if there is none.
 std::string fileInOtherCase(const fs::path& path) {
   const std::string wanted = path.filename().string();
   std::string found;
@@ -40,7 +40,7 @@ std::string fileInOtherCase(const fs::path& path) {
 
 fs::path packageFileOf(const fs::path& folder) { return folder / "package.xml"; }
 
-/// The <name> of a package.xml, without a parser: the first one counts.
+/// The name in the first <name> of a package.xml, found without a parser.
 std::string nameInPackageFile(const fs::path& folder) {
   std::ifstream stream(packageFileOf(folder), std::ios::binary);
   if (!stream) return {};
@@ -63,7 +63,7 @@ bool isPackage(const fs::path& folder, const std::string& package) {
   return folder.filename() == package || nameInPackageFile(folder) == package;
 }
 
-/// The folders directly in `folder`, by name; not those behind links or hidden.
+/// The folders directly in `folder`, sorted by name; without hidden ones.
 std::vector<fs::path> foldersIn(const fs::path& folder) {
   std::vector<fs::path> folders;
   std::error_code error;
@@ -135,7 +135,7 @@ const std::vector<fs::path>& MeshResolver::foldersOf(const std::string& package)
   const auto [entry, is_new] = folders_of_package_.try_emplace(package);
   if (is_new) {
     for (const fs::path& root : options_.search_roots) {
-      // The usual case first: no search through the whole of an installation.
+      // Tries the usual case first, which avoids a search through a whole installation.
       if (search_.findsFolder(root / package)) entry->second.push_back(root / package);
     }
     if (entry->second.empty()) {
@@ -151,7 +151,7 @@ const std::vector<fs::path>& MeshResolver::foldersOf(const std::string& package)
 MeshResolution MeshResolver::notFound(const std::vector<fs::path>& tried) const {
   constexpr std::size_t kMostNamed = 6;
   std::vector<std::string> places;
-  // Relative paths, because warnings go into packs, which must not depend on the machine.
+  // Uses relative paths, because packs contain the warnings, and must not depend on the machine.
   for (const fs::path& path : tried) {
     std::string place = path.lexically_relative(ancestors_.front()).generic_string();
     const bool is_new = std::find(places.begin(), places.end(), place) == places.end();
@@ -276,7 +276,7 @@ MeshResolution MeshResolver::resolve(const std::string& reference) {
   for (const std::string_view scheme : {"package://", "model://"}) {
     if (!reference.starts_with(scheme)) continue;
     std::string path = reference.substr(scheme.size());
-    // package:///pkg/a.stl is written, too.
+    // Some files have package:///pkg/a.stl.
     path.erase(0, std::min(path.find_first_not_of('/'), path.size()));
     const std::size_t slash = path.find('/');
     if (slash == std::string::npos) return resolveRelative(path.empty() ? reference : path);

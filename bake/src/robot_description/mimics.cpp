@@ -10,10 +10,11 @@
 namespace galactic::bake {
 namespace {
 
-/// Packs hold no larger multipliers and offsets: no joint follows another a thousand times faster.
+/// The largest multipliers and offsets that packs can hold: no joint follows another a thousand
+/// times faster.
 constexpr double kMost = 1000;
 
-/// Follows the joints of a robot to those that lead them.
+/// Finds the joints that lead other joints, through chains of them.
 class MimicChains {
  public:
   MimicChains(std::span<const JointMimic> joints, const std::string& where)
@@ -21,7 +22,7 @@ class MimicChains {
     for (std::uint32_t i = 0; i < joints.size(); ++i) joint_of_name_[joints[i].joint] = i;
   }
 
-  /// What the joint at last follows.
+  /// The joint that leads at the end of the chain, and how this joint follows it.
   [[nodiscard]] Result<Mimic> resolve(std::size_t joint) const;
 
  private:
@@ -44,7 +45,7 @@ Result<Mimic> MimicChains::resolve(std::size_t joint) const {
 }
 
 Result<Mimic> MimicChains::followChain(std::size_t joint) const {
-  // The joint's position is multiplier * (position of mimic.link) + offset all along.
+  // Invariant: the joint's position is multiplier * (position of mimic.link) + offset.
   Mimic mimic{.link = static_cast<std::uint32_t>(joint), .multiplier = 1, .offset = 0};
   std::size_t steps = 0;
   while (!joints_[mimic.link].leader.empty()) {

@@ -11,22 +11,22 @@
 
 namespace galactic::bake {
 
-/// What is said of the joint above one of a robot's links: that its position is multiplier * (that
-/// of the joint `leader`)
-/// + offset.
+/// How the joint above one of a robot's links follows another: its position is multiplier *
+/// (position of the joint `leader`) + offset.
 struct JointMimic {
   std::string_view joint{};
   JointType type = JointType::kFixed;
-  /// Empty: the joint follows none.
+  /// Empty if the joint follows none.
   std::string_view leader{};
   double multiplier = 1;
   /// Radians or meters.
   double offset = 0;
 };
 
-/// Chains of them resolved: one entry for each of all links of a robot, in their order; none where
-/// the joint above it mimics nothing. Fails with kInvalidInput on unknown joints, on those without
-/// a single position, and on circles; `where` begins the place of errors.
+/// Resolves chains of joints that follow each other. Returns one entry for each link of a robot, in
+/// their order; none if the joint above it mimics no other. Fails with kInvalidInput on unknown
+/// joints, on joints without a single position, and on cycles; the place of errors begins with
+/// `where`.
 [[nodiscard]] Result<std::vector<std::optional<Mimic>>> resolveMimics(
     std::span<const JointMimic> joints, const std::string& where);
 

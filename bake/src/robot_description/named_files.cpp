@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A glTF of more bytes has its buffers inside.
+/// A larger glTF has its buffers inside.
 constexpr std::size_t kMostGltfBytes = std::size_t{16} << 20U;
 
 std::uint64_t sizeOf(const fs::path& file) {
@@ -46,7 +46,7 @@ void addNamedByGltf(const fs::path& gltf, std::set<fs::path>& files) {
   }
 }
 
-/// The values of all attributes of these names, in the order of the text.
+/// The values of all attributes with these names, in the order of the text.
 std::vector<std::string> valuesOf(std::string_view text,
                                   std::initializer_list<std::string_view> names) {
   std::vector<std::string> values;
@@ -74,7 +74,7 @@ bool isMjcf(const fs::path& path) {
   return extension == ".xml" || extension == ".mjcf";
 }
 
-/// What a robot's file names.
+/// Collects the files that a robot's file names.
 class RobotSearch {
  public:
   RobotSearch(const fs::path& path, const RobotImportOptions& options, std::set<fs::path>& files)
@@ -86,7 +86,7 @@ class RobotSearch {
     if (!mapped) return;
     const auto bytes = mapped->bytes();
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    // Where an MJCF's meshes and textures are.
+    // Folders of an MJCF's meshes and textures.
     std::vector<std::string> folders{""};
     for (std::string& folder : valuesOf(text, {"meshdir", "assetdir", "texturedir"})) {
       folders.push_back(std::move(folder));
@@ -99,7 +99,7 @@ class RobotSearch {
   }
 
  private:
-  /// Whether there is such a file.
+  /// Adds the file; returns whether it exists.
   bool add(const std::string& reference) {
     const fs::path file = resolver_.resolve(reference).file;
     if (file.empty()) return false;

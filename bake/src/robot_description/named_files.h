@@ -7,14 +7,14 @@
 
 namespace galactic::bake {
 
-/// The files that a glTF (buffers and images) or a robot's file (.urdf, .xml or .mjcf: meshes, and
-/// what these name, textures and what is included) names and that are there; none for other files.
-/// For expectations of how much will be read, so quick: a robot's file is searched for names
-/// without a parser, and what cannot be understood names nothing.
+/// The existing files that a glTF names (buffers and images), or a robot's file (.urdf, .xml or
+/// .mjcf: meshes and the files these name, textures, and included files); none for other files.
+/// Meant for quick estimates of how much will be read: searches a robot's file for names without a
+/// parser, and ignores anything it cannot understand.
 [[nodiscard]] std::set<std::filesystem::path> namedFiles(const std::filesystem::path& input,
                                                          const RobotImportOptions& options);
 
-/// Bytes of `input` and of its namedFiles(); 0 where it is not there.
+/// Total size in bytes of `input` and its namedFiles(); `input` counts 0 if it does not exist.
 [[nodiscard]] std::uint64_t bytesWithNamedFiles(const std::filesystem::path& input,
                                                 const RobotImportOptions& options);
 

@@ -23,13 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A revolute joint turns all the way round, a prismatic one moves a meter either way.
+/// A revolute joint can turn all the way round, and a prismatic one can move a meter either way.
 JointLimits assumedLimits(JointType type) {
   const double most = type == JointType::kRevolute ? std::numbers::pi : 1;
   return {-most, most};
 }
 
-/// What the joints above the links follow.
+/// How the joints above the links follow others.
 std::vector<JointMimic> mimicsOf(const RobotDescription& model, const std::vector<TreeLink>& tree) {
   std::vector<JointMimic> mimics;
   for (const TreeLink& link : tree) {
@@ -45,7 +45,8 @@ std::vector<JointMimic> mimicsOf(const RobotDescription& model, const std::vecto
   return mimics;
 }
 
-/// Puts the joints of the model, in the runtime's frame, into the links of `robot`.
+/// Converts the joints of the model to the runtime's frame, and stores them in the links of
+/// `robot`.
 void addJoints(const RobotDescription& model, const std::vector<TreeLink>& tree,
                const std::vector<std::optional<Mimic>>& mimics, UpAxis up, SourceRobot& robot) {
   const bool z_up = up == UpAxis::kZ;
@@ -74,7 +75,7 @@ void addJoints(const RobotDescription& model, const std::vector<TreeLink>& tree,
   }
 }
 
-/// Finds the links that the model allows to touch.
+/// Finds the pairs of links that the model allows to touch.
 void addTouching(const RobotDescription& model, SourceRobot& robot) {
   const auto index_of = [&](const std::string& name) {
     return static_cast<std::uint32_t>(std::ranges::find(robot.links, name, &SourceLink::name) -
@@ -85,7 +86,7 @@ void addTouching(const RobotDescription& model, SourceRobot& robot) {
   }
 }
 
-/// Sorts and hashes the robot's file and the files that it and its meshes named.
+/// Sorts and hashes the robot's file and the files that it and its meshes name.
 Result<void> finishFiles(const RobotDescription& model, SourceRobot& robot, const fs::path& path) {
   robot.read.files.push_back({.name = nameRelativeTo(path, path)});
   for (const std::string& file : model.included) {

@@ -20,14 +20,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostNumbers = std::numeric_limits<std::uint32_t>::max();
 
-/// A shape's color when nothing states one: then its material's counts.
+/// The color of a shape that states none; in this case the color of its material counts.
 constexpr std::array<double, 4> kUnstatedColor{0.5, 0.5, 0.5, 1};
 
-/// Points are read in micrometers at the smallest, whatever scale is stated: they have to be
-/// floats.
+/// Points are read in units of a micrometer or more, whatever the scale: they must fit into floats.
 constexpr double kSmallestUnit = 1e-6;
 
-/// The name of an asset: stated, or that of its file.
+/// The name of an asset: the one it states, or else that of its file.
 std::string nameOf(const MjcfAttributes& asset) {
   std::string name = asset.text("name");
   if (name.empty()) name = fs::path(asset.text("file")).stem().string();
@@ -62,7 +61,7 @@ MjcfAssets::MjcfAssets(const XmlElement& root, const MjcfDefaults& defaults,
                      ErrorCode::kUnsupported);
     }
   }
-  // They name textures that may stand behind them.
+  // Read last, because they may name textures that come after them.
   for (const XmlElement* material : materials) readMaterial(defaults.attributesOf(*material, ""));
 }
 
@@ -77,7 +76,7 @@ void MjcfAssets::readMesh(const MjcfAttributes& mesh, RobotDescription& robot) {
   shape.geometry = DescribedGeometry::kMesh;
   const auto scale = mesh.vector<3>("scale").value_or(std::array<double, 3>{1, 1, 1});
   const auto from = mesh.vector<3>("refpos").value_or(std::array<double, 3>{});
-  // Points are moved, turned back and then scaled.
+  // Points are translated, rotated back and then scaled.
   Affine mesh_from_file = translationOf({-from[0], -from[1], -from[2]});
   bool is_turned = false;
   if (const auto quat = mesh.vector<4>("refquat")) {
@@ -94,7 +93,7 @@ void MjcfAssets::readMesh(const MjcfAttributes& mesh, RobotDescription& robot) {
     shape.size = {1, 1, 1};
     shape.link_from_shape = compose(scaling, mesh_from_file);
   } else {
-    // The same, with the scale where a shape has it.
+    // Equivalent, but with the scale as the size of the shape.
     shape.size = scale;
     shape.link_from_shape =
         translationOf({-from[0] * scale[0], -from[1] * scale[1], -from[2] * scale[2]});

@@ -35,7 +35,7 @@ Vector crossOf(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The numbers of a list that blanks separate, or none where something else is among them.
+/// The numbers of a list separated by blanks; none if it contains anything else.
 std::optional<std::vector<double>> numbersIn(std::string_view text) {
   std::vector<double> numbers;
   while (true) {
@@ -83,7 +83,8 @@ Affine rotationOfAxes(const MjcfAttributes& attributes, const std::array<double,
   return rotationOfColumns(x, y, crossOf(x, y));
 }
 
-/// Small letters turn about the axes that were turned before, great ones about those of the parent.
+/// Lower-case letters are rotations about the axes rotated so far, upper-case ones about those of
+/// the parent.
 Affine rotationOfAngles(const Vector& angles, const MjcfSettings& settings) {
   Affine turned = kIdentityAffine;
   for (std::size_t n = 0; n < 3; ++n) {
@@ -216,7 +217,7 @@ MjcfAttributes MjcfDefaults::attributesOf(const XmlElement& element,
   if (const auto given = defaults.find(element.name); given != defaults.end()) {
     values = given->second;
   }
-  // An orientation replaces another, however each is stated.
+  // Any orientation replaces any other, even one in another form.
   const auto is_orientation = [](const auto& attribute) {
     return std::ranges::find(kOrientations, attribute.first) != kOrientations.end();
   };
@@ -285,7 +286,7 @@ Affine rotationOfZ(const Vector& direction) {
   const Vector to{direction[0] / length, direction[1] / length, direction[2] / length};
   const Vector axis = crossOf({0, 0, 1}, to);
   const double sine = lengthOf(axis);
-  // As MuJoCo has it: Z turned upside down turns about X.
+  // As in MuJoCo, turning Z upside down is a rotation about X.
   if (sine < kShortest) return rotationAbout({1, 0, 0}, to[2] < 0 ? std::numbers::pi : 0);
   return rotationAbout(axis, std::atan2(sine, to[2]));
 }

@@ -15,15 +15,15 @@
 
 namespace galactic::bake {
 
-/// What is found out while an MJCF is read: the first error, after which nothing counts, and what
-/// to warn of.
+/// Collects findings while an MJCF is read: the first error, which makes everything after it void,
+/// and the warnings.
 class MjcfFindings {
  public:
   void error(const std::string& place, std::string message,
              ErrorCode code = ErrorCode::kInvalidInput) {
     if (!error_) error_ = Error{code, place, std::move(message)};
   }
-  /// Each sentence once.
+  /// Adds each sentence only once.
   void warn(std::string sentence) {
     if (told_.insert(sentence).second) warnings_.push_back(std::move(sentence));
   }
@@ -39,8 +39,8 @@ class MjcfFindings {
 
 using AttributeMap = std::map<std::string, std::string, std::less<>>;
 
-/// The attributes of one element, its class's included. What is malformed is an error, and answered
-/// with nothing or with the fallback.
+/// The attributes of one element, including those from its class. A malformed value is reported as
+/// an error; the getter then returns none, or the fallback.
 class MjcfAttributes {
  public:
   MjcfAttributes(const XmlElement& element, AttributeMap values, MjcfFindings& findings)
@@ -49,12 +49,12 @@ class MjcfAttributes {
   [[nodiscard]] const XmlElement& element() const { return element_; }
   [[nodiscard]] MjcfFindings& findings() const { return findings_; }
   [[nodiscard]] bool has(std::string_view name) const { return find(name) != nullptr; }
-  /// Null where it is absent.
+  /// Null if absent.
   [[nodiscard]] const std::string* find(std::string_view name) const;
-  /// Empty where it is absent.
+  /// Empty if absent.
   [[nodiscard]] std::string text(std::string_view name) const;
 
-  /// `least` to `most` finite numbers; none where it is absent.
+  /// From `least` to `most` finite numbers; none if absent.
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view name, std::size_t least,
                                                            std::size_t most) const;
   template <std::size_t kCount>
@@ -66,7 +66,7 @@ class MjcfAttributes {
     return array;
   }
   [[nodiscard]] double number(std::string_view name, double fallback) const;
-  /// One of `words`, by its index.
+  /// The index of the value in `words`.
   [[nodiscard]] std::size_t choice(std::string_view name, std::span<const std::string_view> words,
                                    std::size_t fallback) const;
   [[nodiscard]] bool flag(std::string_view name, bool fallback) const;
@@ -79,34 +79,34 @@ class MjcfAttributes {
   MjcfFindings& findings_;
 };
 
-/// The classes of an MJCF's <default> elements: what attributes they give to elements.
+/// The classes of an MJCF's <default> elements: the attributes that they give to elements.
 class MjcfDefaults {
  public:
   explicit MjcfDefaults(MjcfFindings& findings) : findings_(findings) {}
 
   [[nodiscard]] MjcfFindings& findings() const { return findings_; }
 
-  /// A <default> that is in none.
+  /// Adds a <default> that is not inside another.
   void add(const XmlElement& outermost);
 
-  /// Of an element that has no class itself, `inherited` counts (childclass; empty: none).
+  /// `inherited` is the class of elements that state none (childclass; empty if there is none).
   [[nodiscard]] MjcfAttributes attributesOf(const XmlElement& element,
                                             const std::string& inherited) const;
 
  private:
-  /// Attributes by the name of the element that gets them.
+  /// Attributes by the name of the elements that they apply to.
   using ElementDefaults = std::map<std::string, AttributeMap, std::less<>>;
 
   void fill(const XmlElement& source, const std::string& name);
 
   MjcfFindings& findings_;
-  /// That of no name has what all have.
+  /// The class with the empty name applies to all elements.
   std::map<std::string, ElementDefaults, std::less<>> classes_{{"", {}}};
-  /// How else that one is called.
+  /// Other names of that class.
   std::set<std::string, std::less<>> names_of_all_{"main"};
 };
 
-/// What <compiler> says of the meaning of others.
+/// Settings of <compiler>, which affect the meaning of other elements.
 struct MjcfSettings {
   bool in_degrees = true;
   std::string euler_sequence = "xyz";
@@ -114,28 +114,28 @@ struct MjcfSettings {
   std::string mesh_folder;
   std::string texture_folder;
   bool strips_paths = false;
-  /// Whether masses come from shapes always, never, or where there is no <inertial>.
+  /// Whether masses come from shapes always, never, or only without an <inertial>.
   enum class Inertias { kFromShapes, kStated, kStatedOrFromShapes };
   Inertias inertias = Inertias::kStatedOrFromShapes;
-  /// Groups of the shapes that have mass.
+  /// Range of groups whose shapes have mass.
   std::array<double, 2> massive_groups{0, 5};
-  /// Kilograms of the whole robot; without, as the rest says.
+  /// Kilograms of the whole robot; if absent, the masses stay as they are.
   std::optional<double> total_mass;
 
-  /// An angle of the text in radians.
+  /// Converts an angle of the text to radians.
   [[nodiscard]] double radians(double angle) const;
-  /// What a later <compiler> says replaces what one before it says.
+  /// Reads a <compiler>; its settings replace those of earlier ones.
   void read(const MjcfAttributes& compiler);
 };
 
-/// Where an element is: pos, and quat, axisangle, euler, xyaxes or zaxis.
+/// The pose of an element: pos, and quat, axisangle, euler, xyaxes or zaxis.
 [[nodiscard]] Affine poseOf(const MjcfAttributes& attributes, const MjcfSettings& settings);
 
-/// A rotation by `angle` (radians) about `axis`, of any length but 0.
+/// A rotation by `angle` (radians) about `axis`, which may have any length except 0.
 [[nodiscard]] Affine rotationAbout(const std::array<double, 3>& axis, double angle);
-/// The least rotation that takes Z to `direction`, of any length but 0.
+/// The smallest rotation that takes Z to `direction`, which may have any length except 0.
 [[nodiscard]] Affine rotationOfZ(const std::array<double, 3>& direction);
-/// That of a quaternion w, x, y, z of any length but 0.
+/// The rotation of a quaternion w, x, y, z, which may have any length except 0.
 [[nodiscard]] Affine rotationOf(const std::array<double, 4>& quaternion);
 [[nodiscard]] Affine translationOf(const std::array<double, 3>& offset);
 

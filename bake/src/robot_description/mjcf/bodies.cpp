@@ -14,9 +14,9 @@
 namespace galactic::bake {
 namespace {
 
-/// Elements that make bodies of their own.
+/// Elements that generate bodies.
 constexpr std::array<std::string_view, 4> kMakers{"attach", "composite", "flexcomp", "replicate"};
-/// Those that say nothing of how a robot is built.
+/// Elements that do not describe how a robot is built.
 constexpr std::array<std::string_view, 3> kPassedOver{"light", "plugin", "site"};
 
 /// MuJoCo's cameras look along -Z, with X to the right and Y up.
@@ -32,11 +32,11 @@ std::array<double, 3> rotated(const Affine& m, const std::array<double, 3>& v) {
           m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
 }
 
-/// Where elements are: in a body or in <frame> elements in it.
+/// The place of elements: in a body, or in <frame> elements inside one.
 struct Surroundings {
   int body = -1;
   Affine body_from_here = kIdentityAffine;
-  /// Of elements that state no class.
+  /// Class of elements that state none.
   std::string childclass;
 };
 
@@ -104,7 +104,7 @@ class BodyReader {
   }
 
   void readBody(const XmlElement& element, const Surroundings& around) {
-    // A body has no class.
+    // Bodies have no class.
     const MjcfAttributes attributes = defaults_.attributesOf(element, "");
     if (attributes.flag("mocap", false)) return;
     MjcfBody body;
@@ -180,7 +180,7 @@ class BodyReader {
                          : static_cast<MjcfJointType>(attributes.choice("type", kTypes, 0));
     if (joint.type == MjcfJointType::kFree || joint.type == MjcfJointType::kBall) return joint;
     const bool turns = joint.type == MjcfJointType::kHinge;
-    // Slides move alike wherever their axis goes through.
+    // For slides it does not matter which point the axis goes through.
     if (turns) joint.anchor = attributes.vector<3>("pos").value_or(joint.anchor);
     joint.axis = attributes.vector<3>("axis").value_or(joint.axis);
     const double length = std::hypot(joint.axis[0], joint.axis[1], joint.axis[2]);

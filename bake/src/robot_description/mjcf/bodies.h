@@ -13,53 +13,55 @@ namespace galactic::bake {
 
 enum class MjcfJointType { kHinge, kSlide, kBall, kFree };
 
-/// How a body moves against its parent: about or along an axis in the body's frame.
+/// How a body moves relative to its parent: about or along an axis in the body's frame.
 struct MjcfJoint {
   std::string name;
   MjcfJointType type = MjcfJointType::kHinge;
-  /// Where the axis of a hinge goes through, in the body's frame.
+  /// A point on the axis of a hinge, in the body's frame.
   std::array<double, 3> anchor{};
   std::array<double, 3> axis{0, 0, 1};
-  /// The position at which the body is where the text places it; radians or meters.
+  /// The position at which the body has its pose from the text; radians or meters.
   double reference = 0;
   bool is_limited = false;
   double lower = 0;
   double upper = 0;
 };
 
-/// A camera that stays where it is on its body.
+/// A camera that is fixed to its body.
 struct MjcfCamera {
   std::string name;
-  /// A frame whose X looks along the view and whose Z is up in the image.
+  /// In the view frame, X points along the view and Z is up in the image.
   Affine body_from_view{};
 };
 
 struct MjcfBody {
   std::string name;
-  /// Where it stands, for messages.
+  /// Its place in the text, for messages.
   std::string place;
-  /// Index of the body that it is in; -1: the world.
+  /// Index of the parent body; -1 for the world.
   int parent = -1;
-  /// Where the text places it.
+  /// Its pose in the text.
   Affine parent_from_body{};
-  /// In the order in which they move the body, each within what those before have moved.
+  /// In the order in which they move the body; each moves within the frame that those before it
+  /// have moved.
   std::vector<MjcfJoint> joints;
   std::vector<MjcfGeom> geoms;
-  /// Those that have a name.
+  /// Only those that have a name.
   std::vector<MjcfCamera> cameras;
   std::optional<LinkInertial> inertial;
 };
 
-/// What is in the <worldbody> of an MJCF.
+/// The content of the <worldbody> of an MJCF.
 struct MjcfWorld {
-  /// In the order of the text, so parents before children; without those that others move (mocap).
+  /// In the order of the text, so that parents precede children; without bodies that others move
+  /// (mocap).
   std::vector<MjcfBody> bodies;
-  /// How many shapes belong to no body.
+  /// Number of shapes that belong to no body.
   std::size_t loose_geoms = 0;
 };
 
-/// Reads every <worldbody> of `root`. Bodies and joints without a name get one. `part`: whether
-/// <inertial> elements are read.
+/// Reads every <worldbody> of `root`. Gives names to bodies and joints that have none. `part`
+/// determines whether to read <inertial> elements.
 [[nodiscard]] MjcfWorld readBodies(const XmlElement& root, const MjcfDefaults& defaults,
                                    const MjcfSettings& settings, const MjcfAssets& assets,
                                    DescriptionPart part);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kRestingKey = "home";
 
-/// How many numbers of a pose belong to a joint.
+/// The number of values in a pose that belong to a joint of this type.
 std::size_t numbersOf(MjcfJointType type) {
   if (type == MjcfJointType::kFree) return 7;
   return type == MjcfJointType::kBall ? 4 : 1;
@@ -83,8 +83,8 @@ class Couplings {
     return std::ranges::find(robot_.links, name, &DescribedLink::name) != robot_.links.end();
   }
 
-  /// The joint that an attribute names, of the robot or not; null, and an error, where there is
-  /// none.
+  /// The joint that an attribute names, whether part of the robot or not. Reports an error and
+  /// returns null if there is none.
   const MjcfJoint* jointOf(const MjcfAttributes& equality, std::string_view attribute) const {
     const std::string name = equality.text(attribute);
     const auto found = stated_.find(name);
@@ -95,7 +95,7 @@ class Couplings {
     return nullptr;
   }
 
-  /// The joint that leads all that the joint follows, itself where it follows none.
+  /// The joint at the end of the chain that `joint` follows; `joint` itself if it follows none.
   [[nodiscard]] DescribedJoint* leaderOf(DescribedJoint* joint) const {
     while (!joint->mimic.empty()) joint = made_.find(joint->mimic)->second;
     return joint;
@@ -118,7 +118,7 @@ class Couplings {
     if (second == nullptr) return;
     const auto follower = made_.find(first->name);
     const auto leader = made_.find(second->name);
-    // Of something that is no part of the robot, or held.
+    // One of the joints is not part of the robot, or is held.
     if (follower == made_.end() || leader == made_.end()) return;
     if (polynomial[2] != 0 || polynomial[3] != 0 || polynomial[4] != 0) {
       findings().warn(
@@ -127,13 +127,14 @@ class Couplings {
                       first->name, second->name, first->name));
       return;
     }
-    // Positions count from where the text places the bodies.
+    // Positions count from the pose of the bodies in the text.
     const double multiplier = polynomial[1];
     const double offset = polynomial[0] + first->reference - multiplier * second->reference;
     follow(*follower->second, *leader->second, multiplier, offset);
   }
 
-  /// first = multiplier * second + offset, by whichever of the two is free to follow.
+  /// Makes first = multiplier * second + offset hold, through whichever of the two is free to
+  /// follow.
   void follow(DescribedJoint& first, DescribedJoint& second, double multiplier, double offset) {
     if (leaderOf(&first) == leaderOf(&second)) {
       findings().warn(

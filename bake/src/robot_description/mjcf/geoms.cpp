@@ -14,14 +14,15 @@ namespace galactic::bake {
 namespace {
 
 constexpr double kDensityOfWater = 1000;
-/// The viewer hides higher groups.
+/// The viewer hides higher groups by default.
 constexpr double kLastGroupShown = 2;
 
 enum class GeomType { kSphere, kCapsule, kEllipsoid, kCylinder, kBox, kMesh, kPlane, kField, kSdf };
 constexpr std::array<std::string_view, 9> kTypes{
     "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "plane", "hfield", "sdf"};
 
-/// Half sizes along the axes of a primitive and, of a capsule, of its cylinder.
+/// Half extents along the axes of a primitive; for a capsule, radius and half length of its
+/// cylinder.
 struct Primitive {
   GeomType type = GeomType::kSphere;
   std::array<double, 3> half{};
@@ -33,8 +34,8 @@ std::size_t sizesOf(GeomType type) {
   return type == GeomType::kCapsule || type == GeomType::kCylinder ? 2 : 3;
 }
 
-/// Size and place of a primitive between two points: as MuJoCo, Z points from the second to the
-/// first.
+/// Sets size and pose of a primitive that lies between two points. As in MuJoCo, Z points from the
+/// second to the first.
 void stretch(const std::array<double, 6>& ends, const MjcfAttributes& geom, Primitive& primitive) {
   std::array<double, 3> middle{};
   std::array<double, 3> way{};
@@ -101,7 +102,7 @@ double volumeOf(const Primitive& primitive) {
   }
 }
 
-/// About its center, along its axes.
+/// Moments about its center, along its axes.
 std::array<double, 3> momentsOf(const Primitive& primitive, double mass) {
   const auto& [a, b, c] = primitive.half;
   const auto of_squares = [a = a, b = b, c = c](double share) {
@@ -160,7 +161,7 @@ std::vector<DescribedShape> shapesOf(const Primitive& primitive) {
   }
 }
 
-/// The mass that is stated, if one is, and not negative.
+/// The mass that the text states, if any; refuses negative ones.
 std::optional<double> massOf(const MjcfAttributes& geom) {
   if (!geom.has("mass")) return std::nullopt;
   const double mass = geom.number("mass", 0);
@@ -189,7 +190,7 @@ void weigh(const MjcfAttributes& geom, const Primitive* primitive, MjcfGeom& rea
                                .moments = momentsAlong(frame, {x, y, z, 0, 0, 0})};
 }
 
-/// The shape of a mesh; nothing where no asset has it.
+/// The shape of a mesh; none if there is no such asset.
 std::optional<DescribedShape> readMeshGeom(const MjcfAttributes& geom, GeomType type,
                                            const Affine& body_from_frame, const MjcfAssets& assets,
                                            const MjcfSettings& settings) {

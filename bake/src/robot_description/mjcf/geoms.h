@@ -8,30 +8,30 @@
 
 namespace galactic::bake {
 
-/// A shape of a body, and what it is for.
+/// A shape of a body, and its purpose.
 struct MjcfGeom {
-  /// What it consists of, in the body's frame: one, or the three parts of a capsule.
+  /// Its parts in the body's frame: one, or the three of a capsule.
   std::vector<DescribedShape> shapes;
-  /// Neither contype nor conaffinity is 0: else it is only seen.
+  /// False if contype and conaffinity are both 0: the shape is then only for looks.
   bool collides = true;
-  /// MuJoCo's viewer shows groups 0 to 2 unless it is told otherwise.
+  /// By default, MuJoCo's viewer shows groups 0 to 2.
   bool is_shown = true;
-  /// Seen through entirely.
+  /// Whether it is fully transparent.
   bool is_invisible = false;
-  /// What it weighs: one of these, or nothing. In the body's frame; of no link yet.
+  /// Its mass: one of these, or none. In the body's frame, and not yet assigned to a link.
   std::optional<LinkInertial> inertial;
   std::optional<DescribedMass> mass;
 };
 
-/// A <geom> whose frame, with all <frame> elements around it, is `body_from_frame`; nothing, with a
-/// warning, for planes and height fields, which no robot consists of.
+/// Reads a <geom>. `body_from_frame` is the frame that it is in, including all <frame> elements
+/// around it. None, with a warning, for planes and height fields, which are not parts of robots.
 [[nodiscard]] std::optional<MjcfGeom> readGeom(const MjcfAttributes& geom,
                                                const Affine& body_from_frame,
                                                const MjcfAssets& assets,
                                                const MjcfSettings& settings);
 
-/// The moments `principal` (about the center, along the axes of `turned`) along the axes of the
-/// frame that `turned` is in: xx, yy, zz, xy, xz, yz.
+/// Converts the moments `principal` (about the center, along the axes of `turned`) to the frame
+/// that `turned` is in: xx, yy, zz, xy, xz, yz.
 [[nodiscard]] std::array<double, 6> momentsAlong(const Affine& turned,
                                                  const std::array<double, 6>& principal);
 

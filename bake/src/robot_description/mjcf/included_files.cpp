@@ -16,13 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Puts the content of files in the place of <include> elements.
+/// Replaces <include> elements with the content of the files.
 class Includer {
  public:
   Includer(const fs::path& path, bool allow_outside, WholeMjcf& whole)
       : path_(path), folder_(path.parent_path()), allow_outside_(allow_outside), whole_(whole) {}
 
-  /// Of what is in `element`, which stands in a file in `folder`, `depth` elements deep.
+  /// Expands the content of `element`, which is in a file in `folder`, `depth` elements deep.
   Result<void> expand(XmlElement& element, const fs::path& folder, int depth) {
     if (depth > kMaxXmlNesting) {
       return fail(ErrorCode::kInvalidInput, element.place,

@@ -11,7 +11,7 @@
 namespace galactic::bake {
 namespace {
 
-/// What MuJoCo calls a model without a name.
+/// MuJoCo's name for a model without a name.
 constexpr const char* kUnnamed = "MuJoCo Model";
 
 void readRobot(const XmlElement& root, const std::string& where, DescriptionPart part,

@@ -8,8 +8,8 @@
 
 namespace galactic::bake {
 
-/// Parses MJCF text, and what it includes, into the same as a URDF. For a process of its own: see
-/// parseXml. docs/objects_and_robots.md says what is read and what is not.
+/// Parses MJCF text, and the files that it includes, into the same form as a URDF. Use it in a
+/// process of its own: see parseXml. docs/objects_and_robots.md says what is read and what is not.
 [[nodiscard]] Result<RobotDescription> parseMjcf(const std::string& text,
                                                  const std::filesystem::path& path,
                                                  const DescriptionRequest& request);

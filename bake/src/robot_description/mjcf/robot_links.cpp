@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kWorld = "world";
 
-/// Sines of angles that count as none: files round.
+/// Smaller sines of angles count as 0, because numbers in files are rounded.
 constexpr double kUprightness = 1e-3;
 
 bool isVertical(const std::array<double, 3>& axis) {
@@ -31,8 +31,8 @@ bool moves(const MjcfJoint& joint) {
   return joint.type == MjcfJointType::kHinge || joint.type == MjcfJointType::kSlide;
 }
 
-/// Whether the joints are those of a body that drives on a floor: two ways to slide, and perhaps to
-/// turn about the vertical.
+/// Whether the joints are those of a body that drives on a floor: two that slide, and perhaps one
+/// that turns about the vertical.
 bool isPlanarBase(const std::vector<MjcfJoint>& joints) {
   std::vector<const MjcfJoint*> slides;
   std::size_t turns = 0;
@@ -58,7 +58,7 @@ std::string namesOf(const MjcfWorld& world, const std::vector<std::size_t>& bodi
   return bodies.size() > kMost ? names + fmt::format(" and {} more", bodies.size() - kMost) : names;
 }
 
-/// The bodies of the world itself, and which of them have joints that turn or slide.
+/// The bodies directly in the world, and which of them have joints that turn or slide.
 struct Candidates {
   std::vector<std::size_t> all;
   std::vector<std::size_t> jointed;
@@ -86,7 +86,7 @@ bool isFree(const MjcfBody& body) {
       body.joints, [](const MjcfJoint& joint) { return joint.type == MjcfJointType::kFree; });
 }
 
-/// Makes links and joints of the bodies that are the robot.
+/// Makes links and joints from the bodies of the robot.
 class LinkMaker {
  public:
   LinkMaker(const MjcfWorld& world, const RobotBodies& chosen, const MjcfSettings& settings,
@@ -121,7 +121,7 @@ class LinkMaker {
 
   static bool isSeen(const MjcfGeom& geom) { return geom.is_shown && !geom.is_invisible; }
 
-  /// The joints between a body and its parent, and the links between them.
+  /// Adds the joints between a body and its parent, and the links between these joints.
   void addJoints(const MjcfBody& body) {
     const bool is_first = body.parent < 0;
     if (is_first && !chosen_.hangs_from_world) return;
@@ -129,7 +129,7 @@ class LinkMaker {
         is_first ? kWorld : world_.bodies[static_cast<std::size_t>(body.parent)].name;
     Affine parent_from_here = body.parent_from_body;
     const bool is_base = is_first && !chosen_.moves_against_world;
-    // Where a base stands on the floor says nothing of the robot.
+    // The position of a base on the floor says nothing about the robot.
     if (is_base) parent_from_here[3] = parent_from_here[7] = 0;
     bool reached = false;
     for (const MjcfJoint& joint : body.joints) {
@@ -160,7 +160,7 @@ class LinkMaker {
     robot_.joints.push_back(std::move(fixed));
   }
 
-  /// A recipe may name it for its camera.
+  /// Adds a link that a recipe can name for its camera.
   void addCamera(const MjcfBody& body, const MjcfCamera& camera) {
     const std::string name = uniqueName(camera.name, link_names_);
     DescribedLink& link = robot_.links.emplace_back();
@@ -184,7 +184,7 @@ class LinkMaker {
                       : JointType::kPrismatic;
     if (made.type == JointType::kContinuous) made.lower = made.upper = 0;
     made.parent_from_joint = compose(parent_from_here, translationOf(joint.anchor));
-    // At its reference the body is where the text places it.
+    // At its reference position the body has its pose from the text.
     if (joint.reference != 0) {
       const Affine back =
           turns ? rotationAbout(joint.axis, -joint.reference)
@@ -201,8 +201,8 @@ class LinkMaker {
     return link.name;
   }
 
-  /// What collides is drawn, too, where nothing else is: unless the viewer hides it, and there is
-  /// anything else to see of the robot.
+  /// Collision shapes are also drawn if the body has no other shapes to draw. Shapes that the
+  /// viewer hides are drawn only if nothing else of the robot can be seen.
   static void addShapes(const MjcfBody& body, bool any_looks, DescribedLink& link) {
     const auto is_drawn = [&](const MjcfGeom& geom) {
       return !geom.is_invisible && (geom.is_shown || !any_looks);
@@ -217,7 +217,7 @@ class LinkMaker {
     }
   }
 
-  /// Nobody sees it.
+  /// Removes the looks of a shape that is never drawn.
   static DescribedShape plain(DescribedShape shape) {
     shape.has_color = false;
     shape.hides_looks = true;

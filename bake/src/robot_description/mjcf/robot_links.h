@@ -9,28 +9,30 @@
 
 namespace galactic::bake {
 
-/// Which bodies of the world are the robot, and what it hangs from.
+/// The bodies of the world that make up the robot, and what it is attached to.
 struct RobotBodies {
-  /// By index; with each, all that are in it.
+  /// For each body, by index; includes all bodies inside the chosen ones.
   std::vector<bool> is_part;
-  /// Whether the root is a link "world" that no body is: the robot moves against it, or stands
-  /// askew.
+  /// Whether the root is a link "world" that is not a body, because the robot moves relative to the
+  /// world or stands askew.
   bool hangs_from_world = false;
-  /// Whether joints lead from the world to the robot's first body, or it has several of them.
+  /// Whether joints connect the world to the robot's first body, or the robot has several first
+  /// bodies.
   bool moves_against_world = false;
-  /// Whether the first body's joints let it go where it likes: a robot's base does by itself.
+  /// Whether the joints of the first body let it go anywhere, as a robot's base does by itself.
   bool drives_itself = false;
 };
 
-/// The body of the world that has joints, or the only one; several that are fixed to the world are
-/// one robot (two arms). What is left out is warned of; an error where it is not clear.
+/// Chooses the body of the world that has joints, or the only body; several that are fixed to the
+/// world are one robot (two arms). Warns of bodies that are left out; reports an error if the
+/// choice is not clear.
 [[nodiscard]] RobotBodies chooseRobot(const MjcfWorld& world, const std::string& where,
                                       MjcfFindings& findings);
 
-/// Adds the links and joints of the robot. A body is a link of its name, in the body's frame; one
-/// with several joints, or with a hinge beside its origin, has links without shape before it.
-/// Cameras are links without shape, X along their view. Fixed joints are called after the link
-/// below.
+/// Adds the links and joints of the robot. A body becomes a link of the same name, in the body's
+/// frame. If it has several joints, or a hinge beside its origin, it is preceded by links without
+/// shape. Cameras become links without shape, with X along the view. Fixed joints are named after
+/// the link below.
 void addLinks(const MjcfWorld& world, const RobotBodies& chosen, const MjcfSettings& settings,
               DescriptionPart part, MjcfFindings& findings, RobotDescription& robot);
 

@@ -7,7 +7,8 @@ namespace galactic::bake {
 
 using NameSet = std::set<std::string, std::less<>>;
 
-/// `name`, or with underscores behind it what is not in `taken` yet, and is then.
+/// `name`, with as many underscores appended as make it different from those in `taken`; adds it to
+/// `taken`.
 inline std::string uniqueName(std::string name, NameSet& taken) {
   while (!taken.insert(name).second) name += '_';
   return name;

@@ -8,7 +8,7 @@
 
 namespace galactic::bake {
 
-/// An element of XML with all that is in it but text and comments.
+/// An XML element with its content, except text and comments.
 struct XmlElement {
   std::string name;
   /// In the order of the text.
@@ -17,13 +17,13 @@ struct XmlElement {
   /// File and line, for messages.
   std::string place;
 
-  /// The value of an attribute, or null.
+  /// The value of an attribute; null if absent.
   [[nodiscard]] const std::string* find(std::string_view attribute) const;
 };
 
-/// The outermost element of XML that checkRobotText takes. For a process of its own: broken XML may
-/// crash or hang the parser. `where` names the file in messages. Fails with kInvalidInput on what
-/// is not well-formed.
+/// Parses XML that has passed checkRobotText, and returns its outermost element. Use it in a
+/// process of its own: broken XML may crash or hang the parser. `where` names the file in messages.
+/// Fails with kInvalidInput if the XML is not well-formed.
 [[nodiscard]] Result<XmlElement> parseXml(const std::string& text, const std::string& where);
 
 }  // namespace galactic::bake

@@ -21,7 +21,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Collects what the parser logs; nothing is printed.
+/// Collects the parser's log messages; prints nothing.
 class LogCapture final : public console_bridge::OutputHandler {
  public:
   LogCapture() {
@@ -40,11 +40,11 @@ class LogCapture final : public console_bridge::OutputHandler {
     if (list.size() < kMostMessages) list.push_back(text);
   }
 
-  /// All errors as one sentence.
+  /// All errors, joined to one sentence.
   [[nodiscard]] std::string errors() const {
     std::string reasons;
     for (std::string_view error : errors_) {
-      // Says nothing, and comes after every error of a joint or link.
+      // This message follows every error of a joint or link, and says nothing.
       if (error.ends_with("xml is not initialized correctly")) continue;
       while (error.ends_with('.')) error.remove_suffix(1);
       reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", error);
@@ -61,7 +61,7 @@ class LogCapture final : public console_bridge::OutputHandler {
   std::vector<std::string> warnings_;
 };
 
-/// The <robot> element, or what is wrong with the text.
+/// The <robot> element, or an error that says what is wrong with the text.
 Result<TiXmlElement*> robotElement(TiXmlDocument& document, const std::string& text,
                                    const std::string& where) {
   document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
@@ -81,7 +81,7 @@ Result<TiXmlElement*> robotElement(TiXmlDocument& document, const std::string& t
         fmt::format("its outermost element is {}, expected <robot> (URDF) or <mujoco> (MJCF)",
                     root == nullptr ? "missing" : fmt::format("<{}>", root->Value())));
   }
-  // The parser's library would pass over them, and their links would have no shape.
+  // The parser's library would ignore these elements, and their links would have no shape.
   for (TiXmlElement* e = robot; e != nullptr; e = nextElement(*e)) {
     if (std::string_view(e->Value()).starts_with("xacro:")) {
       return fail(ErrorCode::kUnsupported, fmt::format("{}:{}", where, e->Row()),
@@ -93,8 +93,8 @@ Result<TiXmlElement*> robotElement(TiXmlDocument& document, const std::string& t
   return robot;
 }
 
-/// Names of the children of <robot> called `tag`, in the order of the text: the parser's library
-/// keeps them sorted by name.
+/// Names of the children of <robot> with this tag, in the order of the text: the parser's library
+/// sorts them by name.
 std::vector<std::string> namesInOrder(const TiXmlElement& robot, const char* tag) {
   std::vector<std::string> names;
   for (const auto* e = robot.FirstChildElement(tag); e != nullptr; e = e->NextSiblingElement(tag)) {
@@ -149,7 +149,7 @@ void addMaterial(DescribedShape& shape, const urdf::Material& material) {
   const urdf::Color& c = material.color;
   shape.color = {static_cast<double>(c.r), static_cast<double>(c.g), static_cast<double>(c.b),
                  static_cast<double>(c.a)};
-  // The library does not tell a missing color from black; with a texture it is the former.
+  // The library does not distinguish a missing color from black; with a texture, it is missing.
   shape.has_color = shape.texture.empty() || c.r + c.g + c.b > 0;
 }
 
@@ -228,7 +228,7 @@ DescribedJoint toJoint(const urdf::Joint& joint) {
   return converted;
 }
 
-/// What the parser's library makes of the prepared text.
+/// Returns the model that the parser's library makes of the prepared text.
 Result<urdf::ModelInterfaceSharedPtr> parsedModel(const std::string& text, const std::string& where,
                                                   const LogCapture& log) {
   urdf::ModelInterfaceSharedPtr parsed;
@@ -237,7 +237,7 @@ Result<urdf::ModelInterfaceSharedPtr> parsedModel(const std::string& text, const
   } catch (const std::exception& e) {
     return fail(ErrorCode::kInvalidInput, where, fmt::format("it cannot be read: {}", e.what()));
   }
-  // It goes on after some errors, with half of a link.
+  // The parser continues after some errors, with half of a link.
   if (!parsed || log.hasErrors()) return fail(ErrorCode::kInvalidInput, where, log.errors());
   return parsed;
 }

@@ -19,14 +19,14 @@ namespace {
 
 constexpr const char* kBlanks = " \t\r\n";
 
-/// Lists of numbers that the parser splits at blanks only, and single numbers, around which it
-/// takes no blanks.
+/// Lists of numbers, which the parser splits only at blanks, and single numbers, around which it
+/// accepts no blanks.
 constexpr std::array<std::string_view, 5> kNumberLists{"xyz", "rpy", "scale", "size", "rgba"};
 constexpr std::array<std::string_view, 13> kNumbers{
     "radius", "length", "lower", "upper", "offset", "multiplier", "value",
     "ixx",    "ixy",    "ixz",   "iyy",   "iyz",    "izz"};
 
-/// What the parser refuses where something in it lacks, and nobody here reads.
+/// Elements that nothing here reads, and that the parser refuses if something in them is missing.
 constexpr std::array<const char*, 3> kUnreadOfJoints{"dynamics", "safety_controller",
                                                      "calibration"};
 
@@ -35,7 +35,7 @@ std::string_view textOf(const TiXmlElement& element, const char* attribute) {
   return value == nullptr ? std::string_view() : std::string_view(value);
 }
 
-/// A list, so that they may be removed one by one.
+/// Returns a list, so that they can be removed one by one.
 std::vector<TiXmlElement*> childrenOf(TiXmlElement& parent, const char* tag) {
   std::vector<TiXmlElement*> children;
   for (auto* child = parent.FirstChildElement(tag); child != nullptr;
@@ -45,7 +45,7 @@ std::vector<TiXmlElement*> childrenOf(TiXmlElement& parent, const char* tag) {
   return children;
 }
 
-/// Warnings of which a file that has any has many: the first of each kind, and how many there are.
+/// Warnings that often occur many times in a file: keeps the first of each kind, and their number.
 class Remarks {
  public:
   void add(const std::string& kind, std::string sentence) {
@@ -74,8 +74,8 @@ class Remarks {
   std::vector<Kind> kinds_;
 };
 
-/// Makes blanks of what else separates numbers in real files: commas (which are remarked), tabs and
-/// line ends.
+/// Replaces other separators between numbers in real files with blanks: commas (with a remark),
+/// tabs and line ends.
 void separateByBlanks(TiXmlAttribute& list, int line, Remarks& remarks) {
   std::string value = list.Value();
   if (value.find_first_of(",\t\r\n") == std::string::npos) return;
@@ -88,7 +88,7 @@ void separateByBlanks(TiXmlAttribute& list, int line, Remarks& remarks) {
   list.SetValue(value);
 }
 
-/// Takes the blanks around a number away.
+/// Removes the blanks around a number.
 void trim(TiXmlAttribute& number) {
   std::string value = number.Value();
   value.erase(value.find_last_not_of(kBlanks) + 1);
@@ -108,7 +108,7 @@ void tidyNumbers(TiXmlElement& robot, Remarks& remarks) {
   }
 }
 
-/// Gives the joints of `robot` what the parser wants of limits.
+/// Gives the joints of `robot` the limits that the parser requires.
 void completeLimits(TiXmlElement& robot, std::set<std::string>& without_limits) {
   for (TiXmlElement* joint : childrenOf(robot, "joint")) {
     const std::string_view type = textOf(*joint, "type");
@@ -136,8 +136,8 @@ void removeUnread(TiXmlElement& robot, DescriptionPart part) {
   }
 }
 
-/// Brings numbers into the range from 0 to 1: whole ones of which one is above 1 count as bytes,
-/// others are clamped.
+/// Brings numbers into the range from 0 to 1: if all are whole and one exceeds 1, they count as
+/// bytes; otherwise they are clamped.
 void toUnitScale(std::span<double> numbers) {
   constexpr double kMostOfByte = 255;
   const bool are_whole = std::ranges::all_of(numbers, [](double n) { return n == std::floor(n); });
@@ -145,7 +145,7 @@ void toUnitScale(std::span<double> numbers) {
   for (double& n : numbers) n = std::clamp(are_bytes ? n / kMostOfByte : n, 0.0, 1.0);
 }
 
-/// Brings the color of a material into the range that the parser takes, or takes it away.
+/// Brings the color of a material into the range that the parser accepts, or removes it.
 void repairColor(TiXmlElement& material, Remarks& remarks) {
   TiXmlElement* color = material.FirstChildElement("color");
   if (color == nullptr || color->Attribute("rgba") == nullptr) return;
@@ -160,7 +160,7 @@ void repairColor(TiXmlElement& material, Remarks& remarks) {
     return;
   }
   std::vector<double> rgba = *numbers;
-  // Colors in bytes are found with an alpha of 1, too.
+  // Some files have colors in bytes with an alpha of 1.
   toUnitScale(std::span(rgba).first(3));
   toUnitScale(std::span(rgba).last(1));
   if (rgba == *numbers) return;
@@ -176,12 +176,12 @@ bool hasColorOrTexture(TiXmlElement& material) {
          (texture != nullptr && texture->Attribute("filename") != nullptr);
 }
 
-/// Repairs what the parser refuses of materials.
+/// Repairs or removes materials that the parser refuses.
 void tidyMaterials(TiXmlElement& robot, Remarks& remarks) {
   for (TiXmlElement* material : childrenOf(robot, "material")) {
     repairColor(*material, remarks);
     if (material->Attribute("name") != nullptr && hasColorOrTexture(*material)) continue;
-    // The parser warns where something names it.
+    // The parser warns if anything refers to it.
     robot.RemoveChild(material);
   }
   for (TiXmlElement* link : childrenOf(robot, "link")) {
@@ -189,13 +189,13 @@ void tidyMaterials(TiXmlElement& robot, Remarks& remarks) {
       TiXmlElement* material = visual->FirstChildElement("material");
       if (material == nullptr) continue;
       repairColor(*material, remarks);
-      // To the parser, an empty name is one that no other material has.
+      // The parser does not share materials with an empty name.
       if (material->Attribute("name") == nullptr) material->SetAttribute("name", "");
     }
   }
 }
 
-/// Declares the link "world" where joints hang from it and no link has its name.
+/// Declares the link "world" if joints are attached to it and no link has this name.
 void declareWorld(TiXmlElement& robot, std::vector<std::string>& warnings) {
   constexpr const char* kWorld = "world";
   for (const TiXmlElement* link : childrenOf(robot, "link")) {
@@ -215,8 +215,8 @@ void declareWorld(TiXmlElement& robot, std::vector<std::string>& warnings) {
   }
 }
 
-/// What stands for the <visual> or <collision> of a capsule: copies of it with a cylinder and two
-/// spheres at its ends. None where the text makes no sense; the parser then says so.
+/// The parts that replace the <visual> or <collision> of a capsule: copies of it with a cylinder
+/// and a sphere at each end. None if the text makes no sense; the parser then reports it.
 std::vector<TiXmlElement> partsOfCapsule(const TiXmlElement& element, const TiXmlElement& capsule) {
   const auto radius = numbersOf(capsule.Attribute("radius"), 1);
   const auto length = numbersOf(capsule.Attribute("length"), 1);
@@ -230,7 +230,7 @@ std::vector<TiXmlElement> partsOfCapsule(const TiXmlElement& element, const TiXm
   if (!radius || !length || !xyz || !rpy) return {};
   const auto part = [&](const char* shape, double along) {
     TiXmlElement copy(element);
-    // Where Z of the shape points: the last column of Rz(yaw) Ry(pitch) Rx(roll).
+    // The direction of the shape's Z axis: the last column of Rz(yaw) Ry(pitch) Rx(roll).
     const auto [roll, pitch, yaw] = std::tuple((*rpy)[0], (*rpy)[1], (*rpy)[2]);
     const std::array<double, 3> axis{
         std::cos(roll) * std::sin(pitch) * std::cos(yaw) + std::sin(roll) * std::sin(yaw),
@@ -248,8 +248,8 @@ std::vector<TiXmlElement> partsOfCapsule(const TiXmlElement& element, const TiXm
   return {part("cylinder", 0), part("sphere", -(*length)[0] / 2), part("sphere", (*length)[0] / 2)};
 }
 
-/// Takes capsules apart, which the parser's library does not know: a cylinder as long as the
-/// capsule states, and a sphere at each end.
+/// Splits capsules, which the parser's library does not know, into a cylinder of the length that
+/// the capsule states, and a sphere at each end.
 void replaceCapsules(TiXmlElement& robot) {
   for (TiXmlElement* link : childrenOf(robot, "link")) {
     for (const char* tag : {"visual", "collision"}) {

@@ -12,26 +12,27 @@ class TiXmlElement;
 
 namespace galactic::bake {
 
-/// `count` numbers, or none when there are not so many.
+/// The `count` numbers in `text`; none if it does not hold exactly this many.
 [[nodiscard]] std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count);
 
-/// The element that follows in the text, that inside before that behind; null after the last.
+/// The next element in the text: its first child if it has one, else the one after it; null after
+/// the last.
 [[nodiscard]] TiXmlElement* nextElement(TiXmlElement& element);
 
-/// The text of a URDF as urdfdom takes it.
+/// The text of a URDF in a form that urdfdom accepts.
 struct ParserText {
   std::string text;
-  /// Revolute and prismatic joints whose limits the text does not state.
+  /// Revolute and prismatic joints for which the text states no limits.
   std::set<std::string> without_limits;
 };
 
-/// Makes up for what other readers of URDFs accept and urdfdom does not: commas, tabs and line ends
-/// between numbers, blanks around them, joints without <limit>, colors beyond 0 to 1, materials
-/// without a name, a link "world" to which joints are attached although nothing declares it, and
-/// capsules. Leaves out what nobody here reads, which urdfdom would refuse over an attribute:
-/// efforts and velocities, <dynamics>, <safety_controller>, <calibration> and, unless they are
-/// wanted, <inertial>. `document`, parsed, with a <robot> element, becomes what the text says. What
-/// is worth knowing is added to `warnings`.
+/// Repairs what other readers of URDFs accept and urdfdom does not: commas, tabs and line ends
+/// between numbers, blanks around them, joints without <limit>, colors outside 0 to 1, materials
+/// without a name, a link "world" that joints are attached to but nothing declares, and capsules.
+/// Removes parts that are not read here and might make urdfdom refuse the file because of an
+/// attribute: efforts and velocities, <dynamics>, <safety_controller>, <calibration> and, unless
+/// wanted, <inertial>. `document` must have been parsed and have a <robot> element; it is changed
+/// to match the returned text. Adds remarks for the user to `warnings`.
 [[nodiscard]] ParserText textForParser(TiXmlDocument& document, DescriptionPart part,
                                        std::vector<std::string>& warnings);
 
