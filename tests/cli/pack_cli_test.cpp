@@ -151,7 +151,7 @@ TEST_F(PackCli, InfoGoesOnAfterAPackThatCannotBeRead) {
 TEST_F(PackCli, CheckSaysOkOrTheOffenceOfEachPack) {
   const ProgramRun good = run({"check", "good.pack", "good.pack"});
   EXPECT_EQ(good.exit_code, 0);
-  EXPECT_EQ(good.out, "good.pack: ok\ngood.pack: ok\n");
+  EXPECT_EQ(good.out, "good.pack: ok\n") << "once, though it is named twice";
   EXPECT_EQ(good.err, "");
 
   const ProgramRun all =
