@@ -65,6 +65,8 @@ TEST(AtomicFile, HoldsItsPartsOneAfterTheOther) {
   ASSERT_TRUE(writeFileAtomically(path, {bytesOf("head"), bytesOf(""), bytesOf("payload")}));
   EXPECT_EQ(test::fileContent(path), "headpayload");
   EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"scene.pack"});
+  ASSERT_TRUE(writeFileAtomically(path, "a text"));
+  EXPECT_EQ(test::fileContent(path), "a text");
 }
 
 TEST(AtomicFile, FollowsLinksToWhatIsNotThereYet) {
