@@ -1,5 +1,4 @@
 #include "check/asset_checks.h"
-
 #include "check/common_check.h"
 #include "check/offence.h"
 #include "check/render_check.h"
